@@ -74,7 +74,7 @@ pub struct Sighting {
     /// What it was said to be made of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
-    /// Whether it was said to be far away.
+    /// Whether it was said to be far away, or is measured to be.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_far: bool,
     /// Whether it was said to stand out for somebody who walks there.
@@ -97,16 +97,20 @@ pub struct Spot {
     pub found: Found,
     /// The direction of the box's middle from that of the view, radians, positive right.
     pub off_rad: f64,
+    /// How far over the floor it is from the eye, metres, where the platform knows the depth of the picture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance_m: Option<f64>,
 }
 
 impl Spot {
-    /// A find in a picture that is `width_px` wide and shows `horizontal_fov_rad`, as a pinhole camera does.
+    /// A find in a picture that is `width_px` wide and shows `horizontal_fov_rad`, as a pinhole camera does. Its distance is
+    /// not known.
     #[must_use]
     pub fn new(found: Found, width_px: u32, horizontal_fov_rad: f64) -> Self {
         let half_px = f64::from(width_px) / 2.0;
         let [left, _, right, _] = found.box_px.map(f64::from);
         let off = ((left + right) / 2.0 - half_px) / half_px.max(0.5);
-        Self { found, off_rad: libm::atan(off * libm::tan(horizontal_fov_rad / 2.0)) }
+        Self { found, off_rad: libm::atan(off * libm::tan(horizontal_fov_rad / 2.0)), distance_m: None }
     }
 }
 

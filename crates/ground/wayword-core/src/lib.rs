@@ -10,6 +10,7 @@
 pub mod ambiguity;
 pub mod caption;
 pub mod contain;
+pub mod depth;
 pub mod detector;
 pub mod encoder;
 pub mod failure;
@@ -39,6 +40,7 @@ pub use caption::{
     Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Spot, Trouble, WayOut, Where, Witness,
 };
 pub use contain::contained;
+pub use depth::Depth;
 pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring, apart};
 pub use encoder::{Grounder, TextEncoder};
 pub use failure::Failure;

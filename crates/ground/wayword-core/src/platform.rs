@@ -1,8 +1,8 @@
 //! What a platform must offer.
 
 use crate::{
-    Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph, ViewpointId, Way,
-    graph::GraphError,
+    Depth, Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph, ViewpointId,
+    Way, graph::GraphError,
 };
 use serde::{Deserialize, Serialize};
 use std::{
@@ -60,6 +60,15 @@ pub trait Platform: Send + Sync {
     /// When the frame is not a place of the scene, or its data cannot be read.
     fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         self.look(scene, from, gaze)
+    }
+
+    /// How far away is what [`look`](Self::look) shows from a frame, level and for the same gaze; `None` where the platform
+    /// does not know. It is apart from the view, so that only those who want it pay for it.
+    ///
+    /// # Errors
+    /// When the frame is not a place of the scene, or its data cannot be read.
+    fn depth(&self, _scene: &SceneId, _from: &Frame, _gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        Ok(None)
     }
 
     /// A storey (the lowest is 1) straight from above, without its ceiling and all that is over it; `None` where the
@@ -160,6 +169,10 @@ impl<P: Platform + ?Sized> Platform for Box<P> {
 
     fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         (**self).look_without_picture(scene, from, gaze)
+    }
+
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        (**self).depth(scene, from, gaze)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {

@@ -22,7 +22,7 @@ pub struct PlayedDetector {
 /// The score of whatever it finds.
 const SCORE: f32 = 0.8;
 
-/// A box around the middle of a label, as a share of the picture's width to each side.
+/// A box around the middle of a label, as a share of the picture's width to each side, and twice that of its height.
 const HALF: f64 = 0.05;
 
 impl PlayedDetector {
@@ -40,11 +40,11 @@ impl PlayedDetector {
         let labels = view.ground_truth().map_or(&[][..], |truth| &truth.labels);
         let shown: Vec<&Label> = labels.iter().filter(|label| (self.same)(&label.name, phrase)).collect();
         if shown.is_empty() && self.is(self.alarms, &["alarm", phrase, &place(view)]) {
-            return vec![found(view, 0.0)];
+            return vec![found(view, 0.0, 0.0)];
         }
         let off_rad = |label: &&Label| view.pose.heading.turn_to(label.heading);
         let hits = shown.iter().filter(|label| self.finds(view, label, phrase));
-        hits.map(|label| found(view, off_rad(label))).collect()
+        hits.map(|label| found(view, off_rad(label), label.elevation_rad)).collect()
     }
 }
 
@@ -53,13 +53,16 @@ fn place(view: &View) -> String {
     view.pose.position.to_array().map(|metres| format!("{metres:.2}")).join(" ")
 }
 
-fn found(view: &View, off_rad: f64) -> Found {
+fn found(view: &View, off_rad: f64, elevation_rad: f64) -> Found {
     let (width, height) = view.image.as_ref().map_or((1, 1), |image| (image.width_px(), image.height_px()));
     let (width, height) = (f64::from(width), f64::from(height));
-    let middle = 0.5 + 0.5 * libm::tan(off_rad) / libm::tan(view.horizontal_fov_rad / 2.0);
-    let left = (middle - HALF).clamp(0.0, 1.0) * width;
-    let right = (middle + HALF).clamp(0.0, 1.0) * width;
-    Found { box_px: [left, 0.4 * height, right, 0.6 * height].map(|edge| edge as f32), score: SCORE }
+    let half_width = libm::tan(view.horizontal_fov_rad / 2.0);
+    let across = 0.5 + 0.5 * libm::tan(off_rad) / half_width;
+    let up = libm::tan(elevation_rad) / libm::cos(off_rad);
+    let down = 0.5 - 0.5 * up / (half_width * height / width);
+    let span = |middle: f64, half: f64, side: f64| [middle - half, middle + half].map(|at| at.clamp(0.0, 1.0) * side);
+    let ([left, right], [top, bottom]) = (span(across, HALF, width), span(down, 2.0 * HALF, height));
+    Found { box_px: [left, top, right, bottom].map(|edge| edge as f32), score: SCORE }
 }
 
 impl Detector for PlayedDetector {

@@ -10,7 +10,7 @@ mod testimony;
 pub use nouns::{listed, usual};
 
 use crate::observe::{ObserveError, gazes_around};
-use finds::{Seen, views};
+use finds::{Seen, Walk, views};
 use std::collections::{BTreeMap, BTreeSet};
 use testimony::{Purpose, testify};
 use wayword_checks::detected::DetectorFigures;
@@ -49,7 +49,7 @@ pub fn seek(
     seeker: Seeker<'_>,
 ) -> Result<usize, ObserveError> {
     let seen = views(platform, path, observations)?;
-    correct(&seen, observations, seeker)
+    correct(&seen, Some(Walk { platform, path }), observations, seeker)
 }
 
 /// The same for the caption of one view that is at hand.
@@ -60,14 +60,19 @@ pub fn seek_in(view: &View, caption: Caption, seeker: Seeker<'_>) -> Result<Capt
     let gaze = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
     let mut observation = Observation { looks: vec![Look { gaze, caption }], ..Observation::default() };
     let seen = view.image.is_some().then(|| Seen { frame: 0, look: 0, view: view.clone() });
-    correct(seen.as_slice(), std::slice::from_mut(&mut observation), seeker)?;
+    correct(seen.as_slice(), None, std::slice::from_mut(&mut observation), seeker)?;
     Ok(observation.looks.pop().map(|look| look.caption).unwrap_or_default())
 }
 
-fn correct(seen: &[Seen], observations: &mut [Observation], seeker: Seeker<'_>) -> Result<usize, ObserveError> {
+fn correct(
+    seen: &[Seen],
+    walk: Option<Walk<'_>>,
+    observations: &mut [Observation],
+    seeker: Seeker<'_>,
+) -> Result<usize, ObserveError> {
     let mut wanted: Wanted = seeker.nouns.iter().map(|noun| (normal(noun), PROPOSED)).collect();
     wanted.extend(named(observations));
-    testify(seen, observations, seeker, &wanted, Purpose::Captions)?;
+    testify((seen, walk), observations, seeker, &wanted, Purpose::Captions)?;
     Ok(if wanted.is_empty() { 0 } else { seen.len() })
 }
 
@@ -89,7 +94,8 @@ pub fn seek_claims(
     let mut observations: Vec<Observation> = path.frames.iter().map(around).collect();
     let wanted = claims.iter().map(|claim| (normal(claim), CLAIMED)).collect();
     let seen = views(platform, path, &observations)?;
-    testify(&seen, &mut observations, seeker, &wanted, Purpose::Claims)?;
+    let walk = Some(Walk { platform, path });
+    testify((&seen, walk), &mut observations, seeker, &wanted, Purpose::Claims)?;
     Ok(observations)
 }
 

@@ -14,7 +14,7 @@ use std::{
     sync::{Arc, OnceLock},
 };
 use wayword_core::{
-    DVec3, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
+    DVec3, Depth, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, PlatformError, Pose, SceneId, View,
     ViewpointGraph, ViewpointId,
 };
 use wayword_render::Camera;
@@ -65,15 +65,7 @@ impl Home {
 
     /// The view from a pose, with a picture of this size in pixels.
     pub(super) fn view(&self, pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Result<View, PlatformError> {
-        let aspect = f64::from(height) / f64::from(width.max(1));
-        let camera = Camera {
-            position: pose.position,
-            heading_rad: gaze.heading.rad(),
-            elevation_rad: 0.0,
-            vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
-            width,
-            height,
-        };
+        let camera = camera(pose, gaze, (width, height));
         let picture = self.scene.picture(&camera).map_err(|error| self.refused(&error))?;
         let truth = GroundTruth {
             lists_objects: true,
@@ -83,6 +75,12 @@ impl Home {
         let image = Image::new(width, height, picture.rgb).map_err(|error| self.refused(&error))?;
         let pose = Pose::level(pose.position, gaze.heading);
         Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
+    }
+
+    /// How far away is what the view from a pose shows.
+    pub(super) fn depth(&self, pose: Pose, gaze: Gaze, size: (u32, u32)) -> Result<Depth, PlatformError> {
+        let picture = self.scene.picture(&camera(pose, gaze, size)).map_err(|error| self.refused(&error))?;
+        Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
     }
 
     /// The error that something in this house cannot be drawn.
@@ -153,6 +151,19 @@ impl Home {
     pub(super) fn standing_places(&self) -> Vec<DVec3> {
         let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position(id));
         eyes.map(|eye| eye - DVec3::Z * EYE_M).collect()
+    }
+}
+
+/// A level camera along a gaze.
+fn camera(pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Camera {
+    let aspect = f64::from(height) / f64::from(width.max(1));
+    Camera {
+        position: pose.position,
+        heading_rad: gaze.heading.rad(),
+        elevation_rad: 0.0,
+        vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
+        width,
+        height,
     }
 }
 

@@ -7,7 +7,7 @@ use super::{
 };
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    DVec3, Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
+    DVec3, Depth, Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
     ViewpointGraph, ViewpointId, Way,
 };
 
@@ -63,6 +63,11 @@ impl HousePlatform {
     }
 }
 
+/// A gaze that one flat picture can show.
+fn within_flat(gaze: Gaze) -> Gaze {
+    Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze }
+}
+
 impl Default for HousePlatform {
     fn default() -> Self {
         Self::new(HouseOptions::default())
@@ -91,8 +96,13 @@ impl Platform for HousePlatform {
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let home = self.home(scene)?;
         home.check(from)?;
-        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
-        home.view(from.pose, gaze, (self.options.width_px, self.options.height_px))
+        home.view(from.pose, within_flat(gaze), (self.options.width_px, self.options.height_px))
+    }
+
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        let home = self.home(scene)?;
+        home.check(from)?;
+        home.depth(from.pose, within_flat(gaze), (self.options.width_px, self.options.height_px)).map(Some)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {

@@ -5,7 +5,7 @@ use super::{Gallery, Scenery, Thing, barcode};
 use sha2::{Digest, Sha256};
 use std::{collections::BTreeSet, sync::Arc};
 use wayword_core::{
-    Frame, Gaze, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View, ViewpointGraph,
+    Depth, Frame, Gaze, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View, ViewpointGraph,
     ViewpointId, Where,
 };
 
@@ -66,6 +66,10 @@ impl<P: Platform> Platform for Pictured<P> {
             self.gallery.hang(id, Scenery { room: truth.room.clone(), things: things.collect() });
         }
         Ok(View::new(view.pose, view.horizontal_fov_rad, Some(Arc::new(barcode::image(id))), truth))
+    }
+
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        self.platform.depth(scene, from, gaze)
     }
 
     fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View,
+    Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View,
     ViewpointGraph, ViewpointId, Way,
 };
 
@@ -71,6 +71,11 @@ impl Platform for Remembering<'_> {
             self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
         }
         Ok(view)
+    }
+
+    /// It is not remembered: it takes more room than a picture, and is asked for once.
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        self.platform.depth(scene, from, gaze)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {

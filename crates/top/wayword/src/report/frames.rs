@@ -50,6 +50,8 @@ pub(super) struct FrameView {
 struct BoxView {
     name: String,
     percent: u8,
+    /// How far away it is, where that is known.
+    metres: Option<String>,
     left: f32,
     top: f32,
     width: f32,
@@ -120,6 +122,7 @@ fn boxes(looks: &[Look], heading: Heading) -> Vec<BoxView> {
     let view = |(sighting, Found { box_px: [left, top, right, bottom], score }): (&Sighting, Found)| BoxView {
         name: sighting.name.clone(),
         percent: (100.0 * score).clamp(0.0, 100.0) as u8,
+        metres: sighting.spot.and_then(|spot| spot.distance_m).map(|metres| format!("{metres:.1}")),
         left,
         top,
         width: (right - left).max(0.0),

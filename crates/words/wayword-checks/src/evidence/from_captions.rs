@@ -92,6 +92,7 @@ fn seen_thing(sighting: &Sighting, look: &Look, off_rad: f64) -> SeenThing {
         name: sighting.name.clone(),
         colour: sighting.colour.clone(),
         more_colours: sighting.more_colours.clone(),
+        distance_m: sighting.spot.and_then(|spot| spot.distance_m),
         turn_rad: within_rad.map(|within_rad| off_rad + within_rad),
         ..SeenThing::default()
     }

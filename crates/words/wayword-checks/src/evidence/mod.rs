@@ -78,7 +78,7 @@ pub struct SeenThing {
     pub more_colours: Vec<String>,
     /// Its direction from the frame's heading, radians in (-π, π], positive right.
     pub turn_rad: Option<f64>,
-    /// Its distance from the eye, metres, where it is known.
+    /// Its distance from the eye, metres, where it is known: of a label to its centre, of a detector's find over the floor.
     pub distance_m: Option<f64>,
     /// Its centre, metres, world frame, where it is known.
     pub position: Option<DVec3>,

@@ -69,6 +69,18 @@ fn a_thing_that_several_frames_show_is_one_thing() {
 }
 
 #[test]
+fn one_direction_with_a_distance_gives_a_place() {
+    let chair = SeenThing { distance_m: Some(2.0), ..thing("chair", None, 45.0) };
+    let frames = vec![frame("den", vec![chair]), frame("den", vec![]), frame("den", vec![]), frame("den", vec![])];
+    let (evidence, path) = walked(&NORTH, frames);
+    let memory = Memory::of(&evidence, &path);
+    let at = memory.things[0].position.unwrap();
+    assert!((at.x - 2f64.sqrt()).abs() < 1e-9 && (at.y - 2f64.sqrt()).abs() < 1e-9, "{at}");
+    assert!((memory.distance_m(&memory.things[0], 0).unwrap() - 2.0).abs() < 1e-9);
+    assert_eq!(memory.things[0].passed.map(|passed| passed.side), Some(Side::Right));
+}
+
+#[test]
 fn captions_without_ids_name_one_thing_where_colour_and_directions_allow_it() {
     let coloured =
         |name: &str, colour: &str, deg: f64| SeenThing { colour: Some(colour.into()), ..thing(name, None, deg) };

@@ -169,7 +169,7 @@ fn joined(group: &[Sighted<'_>], eyes: &[DVec3]) -> Remembered {
     Remembered { name: first.name.clone(), object: first.object.clone(), colour, position, glimpses, passed }
 }
 
-/// Where a thing is: as its labels say, or where two of its directions cross.
+/// Where a thing is: as its labels say, as far off as it is from the nearest frame, or where two of its directions cross.
 fn position(group: &[Sighted<'_>]) -> Option<DVec3> {
     let listed = group.iter().find_map(|sighted| sighted.thing.position);
     let rays: Vec<(DVec3, Heading)> = group.iter().filter_map(|sighted| sighted.eye.zip(sighted.towards)).collect();
@@ -177,7 +177,14 @@ fn position(group: &[Sighted<'_>]) -> Option<DVec3> {
         let (first, last) = (rays.first()?, rays.last()?);
         crossing(*first, *last).filter(|(_, a, b)| a.min(*b) > 0.0 && a.max(*b) <= FARTHEST_M).map(|(at, ..)| at)
     };
-    listed.or_else(crossed)
+    listed.or_else(|| nearest(group)).or_else(crossed)
+}
+
+/// The place of the sighting from the least distance.
+fn nearest(group: &[Sighted<'_>]) -> Option<DVec3> {
+    let told = group.iter().filter_map(|sighted| Some((sighted.thing.distance_m?, sighted.eye?, sighted.towards?)));
+    let (far_m, eye, towards) = told.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(eye + towards.direction() * far_m)
 }
 
 /// A thing is passed where it lies beside a hop, and not before its beginning or after its end, metres of slack.

@@ -2,7 +2,7 @@
 
 use super::Seeker;
 use std::collections::{BTreeMap, BTreeSet};
-use wayword_core::{ModelError, Observation, Path, Platform, PlatformError, Spot, View, apart};
+use wayword_core::{Gaze, ModelError, Observation, Path, Platform, PlatformError, Spot, View, apart};
 
 /// Boxes that share more of what they cover together are of the same thing.
 const SAME: f64 = 0.5;
@@ -12,6 +12,13 @@ pub(super) struct Seen {
     pub(super) frame: usize,
     pub(super) look: usize,
     pub(super) view: View,
+}
+
+/// The path along which views were seen, and the platform that showed them.
+#[derive(Clone, Copy)]
+pub(super) struct Walk<'a> {
+    pub(super) platform: &'a dyn Platform,
+    pub(super) path: &'a Path,
 }
 
 /// The frame and the number of a look.
@@ -57,6 +64,28 @@ pub(super) fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result
         }
     }
     Ok(found)
+}
+
+/// Tells how far away the finds are, where the platform knows it. It is asked once for a view, and only for one with finds.
+pub(super) fn measure(walk: Walk<'_>, seen: &[Seen], finds: &mut [Finds]) -> Result<(), PlatformError> {
+    for Seen { frame, look, view } in seen {
+        let place = (*frame, *look);
+        let size_px = view.image.as_ref().map_or([0; 2], |image| [image.width_px(), image.height_px()]);
+        let is_found = finds.iter().any(|finds| finds.contains_key(&place));
+        if !is_found || size_px.contains(&0) {
+            continue;
+        }
+        let gaze = Gaze { heading: view.pose.heading, horizontal_fov_rad: view.horizontal_fov_rad };
+        let from = &walk.path.frames[*frame];
+        let Some(depth) = walk.platform.depth(&walk.path.scene, from, gaze)? else { continue };
+        let [width, height] = size_px.map(f64::from);
+        for spot in finds.iter_mut().filter_map(|finds| finds.get_mut(&place)).flatten() {
+            let [left, top, right, bottom] = spot.found.box_px.map(f64::from);
+            let edges = [left / width, top / height, right / width, bottom / height];
+            spot.distance_m = depth.level_m(edges, view.horizontal_fov_rad);
+        }
+    }
+    Ok(())
 }
 
 /// For each frame that was looked at, whether the name was found from it.

@@ -2,12 +2,12 @@
 
 use super::{
     PROPOSED, Seeker, Wanted,
-    finds::{Finds, Place, Seen, finds, frames},
+    finds::{Finds, Place, Seen, Walk, finds, frames, measure},
 };
 use crate::{
     dialogue::{RulesSummariser, Summariser},
     observe::{CONDENSED_WORDS, ObserveError},
-    seeing::caption_text,
+    seeing::{FAR_M, caption_text},
 };
 use std::collections::BTreeSet;
 use wayword_checks::detected::{Judged, judge};
@@ -26,12 +26,13 @@ pub(super) enum Purpose {
 /// The looks at which the detector looked.
 type Places = BTreeSet<Place>;
 
-/// Looks for what is wanted in the views, and puts what it finds and misses into the captions.
+/// Looks for what is wanted in the views, and puts what it finds and misses into the captions. Where the walk is known of which
+/// the views are, the finds get distances.
 ///
 /// # Errors
 /// When there is no view for captions, or the detector fails.
 pub(super) fn testify(
-    seen: &[Seen],
+    (seen, walk): (&[Seen], Option<Walk<'_>>),
     observations: &mut [Observation],
     seeker: Seeker<'_>,
     wanted: &Wanted,
@@ -49,7 +50,10 @@ pub(super) fn testify(
         return Ok(());
     }
     let names: Vec<&str> = wanted.keys().map(String::as_str).collect();
-    let finds = finds(seen, &names, seeker)?;
+    let mut finds = finds(seen, &names, seeker)?;
+    if let Some(walk) = walk {
+        measure(walk, seen, &mut finds)?;
+    }
     let (by, looked_at) = (seeker.detector.name(), seen.iter().map(|seen| (seen.frame, seen.look)).collect());
     let was: Vec<Vec<Sighting>> = looks(observations).map(|look| look.caption.sightings.clone()).collect();
     for ((name, before), finds) in wanted.iter().zip(finds) {
@@ -89,18 +93,22 @@ fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at:
             return;
         };
         let best = spots[0];
+        let is_far = best.distance_m.map(|distance_m| distance_m > FAR_M);
         let place = Some(Where::at(best.off_rad, look.gaze.horizontal_fov_rad));
         let mut is_named = false;
         for sighting in of(&mut look.caption, name) {
             is_named = true;
             (sighting.witness, sighting.place, sighting.spot) = (Witness::Seen, place, Some(best));
+            sighting.is_far = is_far.unwrap_or(sighting.is_far);
         }
         // A more exact name for it was perhaps said ("dining table"): it stays, and nothing is said twice.
         let is_said = |sighting: &Sighting| sighting.witness == Witness::Seen && agree(&sighting.name, name);
         if !is_named && !look.caption.sightings.iter().any(is_said) {
             let several = spots.len() > 1;
             let spot = Some(best);
-            look.caption.sightings.push(Sighting { place, spot, several, ..Sighting::new(name, Witness::Seen, by) });
+            let is_far = is_far.unwrap_or_default();
+            let new = Sighting::new(name, Witness::Seen, by);
+            look.caption.sightings.push(Sighting { place, spot, several, is_far, ..new });
         }
     });
 }

@@ -2,8 +2,8 @@ use super::*;
 use std::sync::Arc;
 use wayword_checks::{Evidence, Source, Subject, check, detected::Rates};
 use wayword_core::{
-    Check, DVec3, Exchange, Found, Frame, Image, ModelError, Motion, ObjectId, PathRequest, PlatformError, SceneId,
-    Scoring, Style, Verdict, ViewpointGraph, ViewpointId, Where, path::Stop,
+    Check, DVec3, Depth, Exchange, Found, Frame, Image, ModelError, Motion, ObjectId, PathRequest, PlatformError,
+    SceneId, Scoring, Spot, Style, Verdict, ViewpointGraph, ViewpointId, Where, path::Stop,
 };
 
 /// Three frames straight ahead, with a picture each.
@@ -29,6 +29,12 @@ impl Platform for Corridor {
     fn look(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let picture = Image::new(90, 60, vec![0; 90 * 60 * 3]).ok().map(Arc::new);
         Ok(View::new(from.pose, gaze.horizontal_fov_rad, picture, None))
+    }
+
+    /// A thing 3 m ahead on the right, before a wall at 6 m; nothing is known at the last frame.
+    fn depth(&self, _: &SceneId, from: &Frame, _: Gaze) -> Result<Option<Depth>, PlatformError> {
+        let metres = (0..90 * 60).map(|at| if at % 90 >= 70 { 3.0 } else { 6.0 }).collect();
+        Ok((from.pose.position.y < 3.0).then(|| Depth::new(90, 60, metres).unwrap()))
     }
 
     fn object_name(&self, _: &SceneId, _: &Frame, _: &ObjectId) -> Result<Option<String>, PlatformError> {
@@ -117,6 +123,28 @@ fn what_is_found_is_seen_with_its_box_and_its_side() {
         (spot.off_rad - (35.0_f64 / 45.0).atan()).abs() < 1e-6,
         "the middle of the box is 35 px right of the picture's"
     );
+}
+
+#[test]
+fn a_find_is_as_far_as_the_depth_says_and_unknown_where_nobody_knows_it() {
+    let seen = after([&["sofa"], &["sofa"], &["sofa"]], vec![("sofa", vec![0, 1, 2])], &[]);
+    let far_m = |at| of_frame(&seen, at, "sofa").unwrap().spot.unwrap().distance_m;
+    let [first, second, third] = [0, 1, 2].map(far_m);
+    let metres = first.unwrap();
+    // The box reaches from 25 px to 45 px right of the middle, and the nearer quarter of its middle counts.
+    assert!((3.0 * f64::hypot(1.0, 30.0 / 45.0)..3.0 * f64::hypot(1.0, 40.0 / 45.0)).contains(&metres), "{metres}");
+    assert_eq!((second, third), (first, None));
+    assert!(!of_frame(&seen, 0, "sofa").unwrap().is_far);
+    let evidence = Evidence::from_detector(&path(), &alone(&seen, "test/detector")).unwrap();
+    assert_eq!([0, 2].map(|at| evidence.frames[at].things[0].distance_m), [first, None]);
+}
+
+#[test]
+fn records_without_distances_are_read() {
+    let old = r#"{"found":{"box_px":[1.0,2.0,3.0,4.0],"score":0.5},"off_rad":0.25}"#;
+    let spot: Spot = serde_json::from_str(old).unwrap();
+    assert_eq!((spot.off_rad, spot.distance_m), (0.25, None));
+    assert_eq!(serde_json::to_string(&spot).unwrap(), old);
 }
 
 #[test]

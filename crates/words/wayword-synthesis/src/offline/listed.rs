@@ -1,6 +1,7 @@
 //! A view's labels in the form of a structured answer.
 
 use super::labels::third;
+use crate::seeing::FAR_M;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use wayword_core::{GroundTruth, Label, View, Where};
@@ -8,8 +9,6 @@ use wayword_language::lexicon::{Class, plural, thing};
 
 /// Most things that it lists, the nearest first.
 const MOST_LISTED: usize = 14;
-/// Beyond this, a thing is far.
-const FAR_M: f64 = 4.0;
 
 /// What the labels of a view say, as JSON.
 pub(super) fn listed(view: &View, truth: &GroundTruth) -> String {

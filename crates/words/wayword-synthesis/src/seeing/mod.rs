@@ -26,6 +26,9 @@ pub const SCHEMA: Schema = Schema { name: "view", json: include_str!("schema.jso
 /// The request, as the transcript has it.
 pub const REQUEST: &str = "What does the view show a walker?";
 
+/// Beyond this, a thing is far, metres.
+pub(crate) const FAR_M: f64 = 4.0;
+
 /// What precedes the reason for which an answer is asked for once more.
 const AGAIN: &str = "What does it show, in the form that was asked for? The last answer could not be read: ";
 

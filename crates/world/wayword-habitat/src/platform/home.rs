@@ -20,8 +20,8 @@ use std::{
     sync::{Arc, OnceLock},
 };
 use wayword_core::{
-    DVec3, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Island, Label, ObjectId, PlatformError, Pose, SceneId,
-    View, ViewpointGraph, ViewpointId,
+    DVec3, Depth, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Island, Label, ObjectId, PlatformError, Pose,
+    SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::{Camera, RenderError, Scene, render, storey};
 use wayword_world::seen_from;
@@ -104,6 +104,12 @@ impl Home {
             None => None,
         };
         Ok(View::new(Pose::level(eye, gaze.heading), gaze.horizontal_fov_rad, image, truth))
+    }
+
+    /// How far away is what is seen from an eye.
+    pub(super) fn depth(&self, eye: DVec3, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
+        let picture = render(&self.scene, &camera(eye, gaze, size)).map_err(|error| self.refused(&error))?;
+        Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
     }
 
     /// A storey from above, around its viewpoints.

@@ -16,8 +16,8 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DVec3, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
-    ViewpointGraph, ViewpointId, Way,
+    DVec3, Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent,
+    SceneId, View, ViewpointGraph, ViewpointId, Way,
 };
 use wayword_world::said::Hear;
 
@@ -101,9 +101,13 @@ impl HabitatPlatform {
     fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
         let home = self.home(scene)?;
         home.check(from)?;
-        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
-        home.view(from.pose.position, gaze, [self.options.width_px, self.options.height_px], pictured)
+        home.view(from.pose.position, within_flat(gaze), [self.options.width_px, self.options.height_px], pictured)
     }
+}
+
+/// A gaze that one flat picture can show.
+fn within_flat(gaze: Gaze) -> Gaze {
+    Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze }
 }
 
 impl Platform for HabitatPlatform {
@@ -129,6 +133,13 @@ impl Platform for HabitatPlatform {
 
     fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         self.seen(scene, from, gaze, false)
+    }
+
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        let home = self.home(scene)?;
+        home.check(from)?;
+        let size = [self.options.width_px, self.options.height_px];
+        home.depth(from.pose.position, within_flat(gaze), size).map(Some)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {

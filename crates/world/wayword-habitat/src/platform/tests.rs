@@ -113,6 +113,9 @@ fn views_show_the_scene_and_label_it() {
     let image = view.image.unwrap();
     let middle = 3 * (60 * 160 + 80);
     assert_eq!(image.rgb()[middle..middle + 3], [200, 10, 10]);
+    let depth = platform.depth(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap().unwrap();
+    let far_m = depth.level_m([0.4, 0.4, 0.6, 0.6], view.horizontal_fov_rad).unwrap();
+    assert!((far_m - 2.2).abs() < 0.03, "the box begins at 3 m north, the eye stands at 0.8: {far_m}");
     let behind = platform.look_without_picture(&scene, &frame, Gaze::quarter(Heading::NORTH.turned(3.0))).unwrap();
     assert!(behind.image.is_none());
     let object = ObjectId::new("2").unwrap();
@@ -124,6 +127,7 @@ fn views_show_the_scene_and_label_it() {
         platform.look(&scene, &away, Gaze::quarter(Heading::NORTH)),
         Err(PlatformError::UnknownViewpoint { .. })
     ));
+    assert!(platform.depth(&scene, &away, Gaze::quarter(Heading::NORTH)).is_err());
 }
 
 #[test]

@@ -1,0 +1,102 @@
+//! Where the platform knows the depth of its pictures, a detector's finds are as far away as the labels say.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use wayword_checks::{
+    Evidence,
+    detected::{DetectorFigures, Rates},
+};
+use wayword_core::{Detector, Found, Label, ModelError, Path, PathRequest, Platform, Scoring, View};
+use wayword_house::{HouseOptions, HousePlatform};
+use wayword_language::lexicon::{agree, normal};
+use wayword_synthesis::{
+    detection::{Seeker, seek_claims},
+    observe::gazes_around,
+};
+use wayword_testkit::PlayedDetector;
+
+/// A label's distance is to the middle of a thing, a find's to what one sees of it: the front of a bed, the near end of a
+/// rug, and the room behind an open door in which one stands.
+const TOLERANCE_M: f64 = 1.0;
+
+/// A detector that finds all that a label lists, and nothing else.
+const PLAYED: PlayedDetector = PlayedDetector { same: agree, recall: 1.0, alarms: 0.0, repeats: false, seed: 1 };
+
+/// The played detector with the boxes around what the picture shows of each thing.
+struct Outlined;
+
+impl Detector for Outlined {
+    fn name(&self) -> &str {
+        PLAYED.name()
+    }
+
+    fn scoring(&self) -> Scoring {
+        PLAYED.scoring()
+    }
+
+    fn detect(&self, views: &[&View], phrases: &[&str]) -> Vec<Result<Vec<Vec<Found>>, ModelError>> {
+        let outlined = |(view, found): (&&View, Result<Vec<Vec<Found>>, ModelError>)| {
+            let of_phrase = |(phrase, found): (&&str, Vec<Found>)| {
+                let labels = view.ground_truth().unwrap().labels.iter().filter(|label| agree(&label.name, phrase));
+                let boxed = |(label, found): (&Label, Found)| {
+                    let [x, y, width, height] = label.box_px.unwrap();
+                    Found { box_px: [x, y, x + width, y + height].map(|edge| edge as f32), ..found }
+                };
+                labels.zip(found).map(boxed).collect()
+            };
+            Ok(phrases.iter().zip(found?).map(of_phrase).collect())
+        };
+        views.iter().zip(PLAYED.detect(views, phrases)).map(outlined).collect()
+    }
+}
+
+fn figures() -> DetectorFigures {
+    let all = Rates { shown: 2000, found: 1600, absent: 20_000, alarms: 1, runs: vec![1; 8], ..Rates::default() };
+    DetectorFigures { found_from: 0.5, all, ..DetectorFigures::default() }
+}
+
+/// The labels of all that a frame shows around it.
+fn labels(platform: &dyn Platform, path: &Path, at: usize) -> Vec<Label> {
+    let look = |gaze| platform.look(&path.scene, &path.frames[at], gaze).unwrap();
+    let views = gazes_around(path, &path.frames[at]).into_iter().map(look);
+    views.flat_map(|view| view.ground_truth().unwrap().labels.clone()).collect()
+}
+
+/// How far finds are from what the labels say, metres: one for each find of a name of which the view shows one thing.
+fn errors_m(platform: &dyn Platform, path: &Path) -> Vec<f64> {
+    let all: Vec<Vec<Label>> = (0..path.frames.len()).map(|at| labels(platform, path, at)).collect();
+    let names: BTreeSet<String> = all.iter().flatten().map(|label| normal(&label.name)).collect();
+    let seeker = Seeker { detector: &Outlined, figures: &figures(), nouns: &[] };
+    let seen = seek_claims(platform, path, &names, seeker).unwrap();
+    let evidence = Evidence::from_detector(path, &seen).unwrap();
+    let mut errors = Vec::new();
+    for (labels, frame) in all.iter().zip(&evidence.frames) {
+        for thing in &frame.things {
+            let alike: Vec<&Label> = labels.iter().filter(|label| agree(&label.name, &thing.name)).collect();
+            if let [only] = alike[..] {
+                let level_m = only.distance_m.unwrap() * only.elevation_rad.cos();
+                errors.push((thing.distance_m.unwrap() - level_m).abs());
+            }
+        }
+    }
+    errors
+}
+
+#[test]
+fn finds_are_as_far_away_as_labels_say() {
+    let platform = HousePlatform::new(HouseOptions { width_px: 320, height_px: 240, ..HouseOptions::default() });
+    let mut errors: Vec<f64> = Vec::new();
+    for seed in 0..4 {
+        let scene = HousePlatform::scene_of(seed).unwrap();
+        let path = platform.sample_path(&scene, &PathRequest::default(), seed).unwrap();
+        errors.extend(errors_m(&platform, &path));
+    }
+    errors.sort_by(f64::total_cmp);
+    let share = errors.partition_point(|metres| *metres <= TOLERANCE_M) as f64 / errors.len() as f64;
+    let median_m = errors[errors.len() / 2];
+    println!("{} finds, median {median_m:.2} m, {:.0} % within {TOLERANCE_M} m", errors.len(), 100.0 * share);
+    assert!(errors.len() >= 50, "{} finds", errors.len());
+    assert!(median_m <= 0.25, "median {median_m:.2} m");
+    assert!(share >= 0.85, "{share:.2} within {TOLERANCE_M} m");
+}
