@@ -135,6 +135,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-house",
                 "wayword-language",
                 "wayword-ledger",
+                "wayword-local",
                 "wayword-metrics",
                 "wayword-navigation",
                 "wayword-remote",

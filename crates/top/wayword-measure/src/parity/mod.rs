@@ -20,7 +20,7 @@ pub(super) struct Flags {
     /// The detector.
     #[arg(value_enum)]
     detector: Kind,
-    /// The folder of its random checkpoint and of PyTorch's numbers, up to 2 GB. They are made where it has none.
+    /// A folder for random checkpoints and PyTorch's numbers, up to 2 GB for each detector. What it lacks is made.
     #[arg(long)]
     folder: PathBuf,
     /// Compute so many pictures with each of the two, in turns, and compare the times.
@@ -61,10 +61,11 @@ const TIMED: (u32, u32) = (640, 480);
 pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let threads = rayon::ThreadPoolBuilder::new().num_threads(THREADS).build_global();
     threads.map_err(|error| Error::usage(format!("cannot use {THREADS} threads: {error}"), "try again"))?;
-    let oracle = Oracle::made(flags.detector, &flags.folder, &flags.python)?;
+    let folder = flags.folder.join(flags.detector.script().1);
+    let oracle = Oracle::made(flags.detector, &folder, &flags.python)?;
     let mut lines = Vec::new();
     if flags.times > 0 {
-        lines.extend(times(flags, &oracle)?);
+        lines.extend(times(flags, &folder, &oracle)?);
     }
     lines.push("picture    phrases   logits     boxes".to_owned());
     let mut loaded: Option<(Option<usize>, Subject)> = None;
@@ -72,7 +73,7 @@ pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
         // GLIP's pictures are shown at several sizes.
         let subject = match loaded.take() {
             Some((short_px, subject)) if short_px == case.short_px => subject,
-            _ => Subject::load(flags.detector, &flags.folder, case.short_px)?,
+            _ => Subject::load(flags.detector, &folder, case.short_px)?,
         };
         let off = subject.off(case, &oracle.numbers(at))?;
         lines.push(line(case, off));
@@ -90,8 +91,8 @@ fn line(case: &Case, off: Off) -> String {
 }
 
 /// The times of both sides, in turns.
-fn times(flags: &Flags, oracle: &Oracle) -> Result<Vec<String>, Error> {
-    let subject = Subject::load(flags.detector, &flags.detector.timed(&flags.folder), Some(480))?;
+fn times(flags: &Flags, folder: &Path, oracle: &Oracle) -> Result<Vec<String>, Error> {
+    let subject = Subject::load(flags.detector, &flags.detector.timed(folder), Some(480))?;
     let mut theirs = oracle.clock(&flags.python)?;
     let (mut ours, mut other, mut many) = (Vec::new(), Vec::new(), Vec::new());
     // The first of each warms up.

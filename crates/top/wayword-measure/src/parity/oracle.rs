@@ -38,9 +38,9 @@ pub(super) struct Case {
 
 impl Case {
     /// For each phrase what was found.
-    pub(super) fn found(&self) -> impl Iterator<Item = Vec<Found>> {
+    pub(super) fn found(&self) -> Vec<Vec<Found>> {
         let one = |&[left, top, right, bottom, score]: &[f32; 5]| Found { box_px: [left, top, right, bottom], score };
-        self.boxes.iter().map(move |found| found.iter().map(one).collect())
+        self.boxes.iter().map(|found| found.iter().map(one).collect()).collect()
     }
 }
 

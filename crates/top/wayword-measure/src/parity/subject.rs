@@ -52,7 +52,7 @@ impl Subject {
         match self {
             Self::Glip(glip) => {
                 let (logits, _) = glip.raw(&image, &phrases)?;
-                let boxes_px = finds_off(&glip.find(&image, &phrases)?, case.found());
+                let boxes_px = finds_off(&glip.find(&image, &phrases)?, &case.found());
                 Ok(Off { logits: off(&logits, &theirs.of("logits")?), boxes_px })
             }
             Self::Dino(dino) => {
@@ -81,12 +81,13 @@ impl Subject {
     }
 }
 
-/// The largest difference. Different numbers of numbers differ without end.
+/// The largest difference. Different numbers of numbers differ without end, and so does what is not a number.
 fn off(ours: &[f32], theirs: &[f32]) -> f32 {
     if ours.len() != theirs.len() {
         return f32::INFINITY;
     }
-    ours.iter().zip(theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+    let differences = ours.iter().zip(theirs).map(|(a, b)| (a - b).abs());
+    differences.map(|off| if off.is_nan() { f32::INFINITY } else { off }).fold(0.0, f32::max)
 }
 
 /// Shares of a picture in pixels.
@@ -105,8 +106,11 @@ fn same_set(ours: &[u32], theirs: &[u32]) -> bool {
 
 /// The largest difference of finds' edges. Finds with nearly equal scores may stand in another order; one without a
 /// counterpart differs without end.
-fn finds_off(ours: &[Vec<Found>], theirs: impl Iterator<Item = Vec<Found>>) -> f32 {
-    let of_phrase = |(ours, theirs): (&Vec<Found>, Vec<Found>)| {
+fn finds_off(ours: &[Vec<Found>], theirs: &[Vec<Found>]) -> f32 {
+    if ours.len() != theirs.len() {
+        return f32::INFINITY;
+    }
+    let of_phrase = |(ours, theirs): (&Vec<Found>, &Vec<Found>)| {
         let nearest =
             |find: &Found| ours.iter().map(|our| off(&our.box_px, &find.box_px)).fold(f32::INFINITY, f32::min);
         let most = theirs.iter().map(nearest).fold(0.0, f32::max);
