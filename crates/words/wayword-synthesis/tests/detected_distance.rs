@@ -97,6 +97,6 @@ fn finds_are_as_far_away_as_labels_say() {
     let median_m = errors[errors.len() / 2];
     println!("{} finds, median {median_m:.2} m, {:.0} % within {TOLERANCE_M} m", errors.len(), 100.0 * share);
     assert!(errors.len() >= 50, "{} finds", errors.len());
-    assert!(median_m <= 0.25, "median {median_m:.2} m");
-    assert!(share >= 0.85, "{share:.2} within {TOLERANCE_M} m");
+    assert!(median_m <= 0.3, "median {median_m:.2} m");
+    assert!(share >= 0.9, "{share:.2} within {TOLERANCE_M} m");
 }

@@ -81,6 +81,17 @@ fn one_direction_with_a_distance_gives_a_place() {
 }
 
 #[test]
+fn things_in_one_direction_at_other_distances_are_two() {
+    let chair = |far_m| SeenThing { distance_m: Some(far_m), ..thing("chair", None, 0.0) };
+    let things = |first_m, second_m| {
+        let frames = vec![frame("den", vec![chair(first_m)]), frame("den", vec![chair(second_m)])];
+        let (evidence, path) = walked(&NORTH[..2], frames);
+        Memory::of(&evidence, &path).things.len()
+    };
+    assert_eq!((things(6.0, 5.5), things(2.0, 8.0)), (1, 2));
+}
+
+#[test]
 fn captions_without_ids_name_one_thing_where_colour_and_directions_allow_it() {
     let coloured =
         |name: &str, colour: &str, deg: f64| SeenThing { colour: Some(colour.into()), ..thing(name, None, deg) };

@@ -66,6 +66,9 @@ impl Remembered {
 
 /// Sightings without ids that lie no farther apart are of one thing, metres.
 const SAME_M: f64 = 0.8;
+/// The same where distances are measured: to what is seen of a thing, which is its front from one side and its back from the
+/// other.
+const SAME_FRONT_M: f64 = 1.5;
 /// Two directions cross where they differ by more than this, radians.
 const CROSSING_RAD: f64 = 0.17;
 /// Things without a known place are taken to be no farther than this, metres.
@@ -78,6 +81,14 @@ struct Sighted<'a> {
     /// Its direction, where poses are known.
     towards: Option<Heading>,
     eye: Option<DVec3>,
+}
+
+impl Sighted<'_> {
+    /// How far away it is measured to be, metres, and where that is.
+    fn measured(&self) -> Option<(f64, DVec3)> {
+        let (far_m, eye, towards) = (self.thing.distance_m?, self.eye?, self.towards?);
+        Some((far_m, eye + towards.direction() * far_m))
+    }
 }
 
 /// The things of a walk. `eyes` is empty where the motion is unknown.
@@ -120,6 +131,9 @@ fn is_same(group: &[Sighted<'_>], new: &Sighted<'_>) -> bool {
     }
     if let (Some(a), Some(b)) = (last.thing.position, new.thing.position) {
         return a.distance(b) <= SAME_M;
+    }
+    if let (Some(a), Some(b)) = (last.measured(), new.measured()) {
+        return a.1.distance(b.1) <= SAME_FRONT_M;
     }
     match (last.eye.zip(last.towards), new.eye.zip(new.towards)) {
         (Some(a), Some(b)) => can_meet(a, b),
@@ -182,9 +196,8 @@ fn position(group: &[Sighted<'_>]) -> Option<DVec3> {
 
 /// The place of the sighting from the least distance.
 fn nearest(group: &[Sighted<'_>]) -> Option<DVec3> {
-    let told = group.iter().filter_map(|sighted| Some((sighted.thing.distance_m?, sighted.eye?, sighted.towards?)));
-    let (far_m, eye, towards) = told.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(eye + towards.direction() * far_m)
+    let measured = group.iter().filter_map(Sighted::measured);
+    measured.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
 }
 
 /// A thing is passed where it lies beside a hop, and not before its beginning or after its end, metres of slack.

@@ -11,8 +11,8 @@ use crate::{
 };
 use std::collections::BTreeSet;
 use wayword_checks::detected::{Judged, judge};
-use wayword_core::{Caption, Look, ModelError, Observation, Sighting, Where, Witness};
-use wayword_language::lexicon::{agree, normal};
+use wayword_core::{Caption, Look, ModelError, Observation, Sighting, Spot, Where, Witness};
+use wayword_language::lexicon::{Class, agree, normal, thing};
 
 /// What the finds are for.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -92,7 +92,7 @@ fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at:
             doubt(look, name, by);
             return;
         };
-        let best = spots[0];
+        let best = nearest(spots, name);
         let is_far = best.distance_m.map(|distance_m| distance_m > FAR_M);
         let place = Some(Where::at(best.off_rad, look.gaze.horizontal_fov_rad));
         let mut is_named = false;
@@ -111,6 +111,18 @@ fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at:
             look.caption.sightings.push(Sighting { place, spot, several, is_far, ..new });
         }
     });
+}
+
+/// The find that a look stands for: the nearest, or the best where a distance is not known. That of a door is not told, for it
+/// would be that of the room behind an open one.
+pub(super) fn nearest(spots: &[Spot], name: &str) -> Spot {
+    if thing(name).is_some_and(|thing| thing.class == Class::Door) {
+        return Spot { distance_m: None, ..spots[0] };
+    }
+    let far_m = |spot: &Spot| spot.distance_m.unwrap_or(0.0);
+    // Of several with the least distance, and so of all where none is known, the first is the best.
+    let nearer = |nearest: Spot, other: &Spot| if far_m(other) < far_m(&nearest) { *other } else { nearest };
+    spots[1..].iter().fold(spots[0], nearer)
 }
 
 /// It is nowhere: the captions that name it are wrong.

@@ -140,6 +140,16 @@ fn a_find_is_as_far_as_the_depth_says_and_unknown_where_nobody_knows_it() {
 }
 
 #[test]
+fn of_several_finds_the_nearest_counts_and_a_door_has_no_distance() {
+    let spot = |score, distance_m| Spot { found: Found { box_px: [0.0; 4], score }, off_rad: 0.0, distance_m };
+    let spots = [spot(0.9, Some(6.0)), spot(0.6, Some(2.0))];
+    assert_eq!(testimony::nearest(&spots, "chair"), spots[1]);
+    assert_eq!(testimony::nearest(&spots, "door"), spot(0.9, None), "it would be that of the room behind");
+    let unknown = [spot(0.9, None), spot(0.6, None)];
+    assert_eq!(testimony::nearest(&unknown, "chair"), unknown[0]);
+}
+
+#[test]
 fn records_without_distances_are_read() {
     let old = r#"{"found":{"box_px":[1.0,2.0,3.0,4.0],"score":0.5},"off_rad":0.25}"#;
     let spot: Spot = serde_json::from_str(old).unwrap();
