@@ -165,6 +165,17 @@ impl RunFolder {
     }
 }
 
+/// Refuses a folder that cannot be one, before models are loaded.
+///
+/// # Errors
+/// When it is a file.
+pub(crate) fn refuse_file(folder: &Path) -> Result<(), Error> {
+    if !folder.exists() || folder.is_dir() {
+        return Ok(());
+    }
+    Err(Error::io(folder, "make the folder")(std::io::ErrorKind::NotADirectory.into()))
+}
+
 /// The name under which the ledger keeps a folder's spending: the one that the folder keeps, else a new one. Nothing is
 /// written, so that models can be loaded before the folder is made; [`keep_id`] writes it.
 /// A new run in place of a deleted one has another name, so it starts without spending.

@@ -83,6 +83,7 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     let models = Models::of(&job)?;
     let grounders = Grounders::open(&kept, output)?;
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
+    run::refuse_file(&args.out)?;
     let begun = run::is_begun(&args.out).then(|| begin(&args.out, &kept)).transpose()?;
     let id = run::id_of(&args.out, "compare")?;
     let calls = models.open(&id, output)?;

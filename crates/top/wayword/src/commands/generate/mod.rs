@@ -20,7 +20,7 @@ use crate::{
     pipeline::{RunPlatform, make},
     plan::Plan,
     platforms::{self, has_hops},
-    run::{RunFolder, WorldData, continued, id_of, is_begun, keep_id, text_name},
+    run::{RunFolder, WorldData, continued, id_of, is_begun, keep_id, refuse_file, text_name},
     settings::{Job, Settings},
     styles::Measured,
     team::Team,
@@ -114,6 +114,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         refuse_impossible_paths(&plan.items, settings, platform.as_ref())?;
     }
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
+    refuse_file(folder)?;
     let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;
     let id = id_of(folder, "run")?;
     let calls = plan.models.open(&id, output)?;
