@@ -28,6 +28,7 @@ impl Side {
             1 => (2, face.rgb.repeat(4)),
             side_px => (side_px, face.rgb),
         };
+        rgb.reserve_exact(2);
         rgb.extend([0; 2]);
         Self { side_px, rgb }
     }

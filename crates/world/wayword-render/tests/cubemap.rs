@@ -110,7 +110,7 @@ fn looked_up(faces: &[Face; 6], direction: Vec3) -> [u8; 3] {
 }
 
 proptest! {
-    /// A row is drawn many columns at a time: that changes no byte. Widths around the columns of one step, and faces of any
+    /// A row is drawn many columns at a time: that changes hardly a level. Widths around the columns of one step, and faces of any
     /// size down to one pixel.
     #[test]
     fn a_view_is_its_rays_one_by_one(
