@@ -4,7 +4,7 @@ use super::{
     config::{Config, Family},
     decoder::{Decoder, Seen},
     encoder::EncoderLayer,
-    features::{Eye, Features, Level},
+    features::{Eye, Features},
     picture::Shown,
     prompt::{self, Prompt},
     queries::Chooser,
@@ -114,7 +114,10 @@ impl Dino {
         picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
     ) -> Computed<Seen> {
         let (cells, read) = self.encoded(features, text)?;
-        self.decoded((&cells, &read), &features.levels, picked)
+        let levels = &features.levels[..];
+        let candidates = self.chooser.candidates(&cells, &read, levels)?;
+        let picked = picked(self.chooser.best(&candidates));
+        self.decoder.of(self.chooser.boxes(&candidates, &picked)?, &cells, &read, levels)
     }
 
     /// The states of cells and tokens behind the encoder.
@@ -125,18 +128,6 @@ impl Dino {
         self.encoder
             .iter()
             .try_fold(begin, |(cells, states), layer| layer.of(&cells, &states, (&positions, levels), text))
-    }
-
-    /// What the queries see in the encoder's states.
-    fn decoded(
-        &self,
-        (cells, read): (&Tensor, &Tensor),
-        levels: &[Level],
-        picked: impl FnOnce(Vec<u32>) -> Vec<u32>,
-    ) -> Computed<Seen> {
-        let candidates = self.chooser.candidates(cells, read, levels)?;
-        let picked = picked(self.chooser.best(&candidates));
-        self.decoder.of(self.chooser.boxes(&candidates, &picked)?, cells, read, levels)
     }
 
     /// The network's own numbers for a picture and phrases of one prompt. `order` says which candidates become queries
