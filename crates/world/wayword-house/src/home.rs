@@ -64,22 +64,23 @@ impl Home {
     }
 
     /// The view from a pose, with a picture of this size in pixels.
-    pub(super) fn view(&self, pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Result<View, PlatformError> {
-        let camera = camera(pose, gaze, (width, height));
+    pub(super) fn view(&self, pose: Pose, gaze: Gaze, size: [u32; 2]) -> Result<View, PlatformError> {
+        let camera = Camera::level(pose.position, gaze, size);
         let picture = self.scene.picture(&camera).map_err(|error| self.refused(&error))?;
         let truth = GroundTruth {
             lists_objects: true,
             labels: labels(&self.scene, &camera, gaze, &picture),
             room: self.room_seen(pose.position, gaze.heading),
         };
-        let image = Image::new(width, height, picture.rgb).map_err(|error| self.refused(&error))?;
+        let image = Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.refused(&error))?;
         let pose = Pose::level(pose.position, gaze.heading);
         Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
     }
 
     /// How far away is what the view from a pose shows.
-    pub(super) fn depth(&self, pose: Pose, gaze: Gaze, size: (u32, u32)) -> Result<Depth, PlatformError> {
-        let picture = self.scene.picture(&camera(pose, gaze, size)).map_err(|error| self.refused(&error))?;
+    pub(super) fn depth(&self, pose: Pose, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
+        let picture =
+            self.scene.picture(&Camera::level(pose.position, gaze, size)).map_err(|error| self.refused(&error))?;
         Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
     }
 
@@ -113,7 +114,7 @@ impl Home {
     pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
         let mut all = Vec::new();
         for gaze in Gaze::around(pose.heading) {
-            let view = self.view(pose, gaze, (320, 240))?;
+            let view = self.view(pose, gaze, [320, 240])?;
             all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
         }
         Ok(all)
@@ -151,19 +152,6 @@ impl Home {
     pub(super) fn standing_places(&self) -> Vec<DVec3> {
         let eyes = self.graph.viewpoints().filter_map(|id| self.graph.position(id));
         eyes.map(|eye| eye - DVec3::Z * EYE_M).collect()
-    }
-}
-
-/// A level camera along a gaze.
-fn camera(pose: Pose, gaze: Gaze, (width, height): (u32, u32)) -> Camera {
-    let aspect = f64::from(height) / f64::from(width.max(1));
-    Camera {
-        position: pose.position,
-        heading_rad: gaze.heading.rad(),
-        elevation_rad: 0.0,
-        vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
-        width,
-        height,
     }
 }
 

@@ -10,11 +10,10 @@ use wayword_core::{
     DVec3, Depth, Frame, FromAbove, Gaze, ObjectId, Path, PathRequest, Platform, PlatformError, Recent, SceneId, View,
     ViewpointGraph, ViewpointId, Way,
 };
+use wayword_render::flat;
 
 /// How many houses are kept in memory; each takes about 15 MB.
 const READY: usize = 6;
-/// Widest gaze that one flat picture can show, radians.
-const WIDEST_RAD: f64 = 2.6;
 
 /// Homes from seeds: scene `house-7` is the home of seed 7.
 #[derive(Debug)]
@@ -63,11 +62,6 @@ impl HousePlatform {
     }
 }
 
-/// A gaze that one flat picture can show.
-fn within_flat(gaze: Gaze) -> Gaze {
-    Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze }
-}
-
 impl Default for HousePlatform {
     fn default() -> Self {
         Self::new(HouseOptions::default())
@@ -96,13 +90,13 @@ impl Platform for HousePlatform {
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let home = self.home(scene)?;
         home.check(from)?;
-        home.view(from.pose, within_flat(gaze), (self.options.width_px, self.options.height_px))
+        home.view(from.pose, flat(gaze), [self.options.width_px, self.options.height_px])
     }
 
     fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
         let home = self.home(scene)?;
         home.check(from)?;
-        home.depth(from.pose, within_flat(gaze), (self.options.width_px, self.options.height_px)).map(Some)
+        home.depth(from.pose, flat(gaze), [self.options.width_px, self.options.height_px]).map(Some)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {

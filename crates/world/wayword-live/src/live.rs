@@ -15,11 +15,8 @@ use wayword_core::{
     DVec3, Failure, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
     SceneId, View, ViewpointGraph, ViewpointId,
 };
-use wayword_render::Camera;
+use wayword_render::{Camera, flat};
 use wayword_world::{said::Hear, seen_from};
-
-/// Widest gaze that one flat picture can show, radians.
-const WIDEST_RAD: f64 = 2.6;
 
 /// A simulator that runs as a separate program.
 pub(crate) trait Simulator: Send + fmt::Debug {
@@ -205,16 +202,7 @@ impl<S: Simulator> Live<S> {
     }
 
     fn camera(&self, eye: DVec3, gaze: Gaze) -> Camera {
-        let Pictures { width_px: width, height_px: height, .. } = self.pictures;
-        let aspect = f64::from(height) / f64::from(width.max(1));
-        Camera {
-            position: eye,
-            heading_rad: gaze.heading.rad(),
-            elevation_rad: 0.0,
-            vertical_fov_rad: 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect),
-            width,
-            height,
-        }
+        Camera::level(eye, gaze, [self.pictures.width_px, self.pictures.height_px])
     }
 
     /// Sends progress lines to `hear`: what the program waits for, and what the simulator's scenes lack.
@@ -300,7 +288,7 @@ impl<S: Simulator> Platform for Live<S> {
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         walk::check(scene, from)?;
-        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze };
+        let gaze = flat(gaze);
         let (rgb, truth) = self.seen(scene, from.pose.position, gaze)?;
         let image = Image::new(self.pictures.width_px, self.pictures.height_px, rgb);
         let pose = Pose::level(from.pose.position, gaze.heading);

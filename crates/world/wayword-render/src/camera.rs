@@ -2,6 +2,17 @@
 
 use crate::picture::{RenderError, check_finite, check_size};
 use glam::{DMat3, DVec3};
+use wayword_core::Gaze;
+
+/// Narrowest and widest horizontal field of view of one flat picture, radians.
+const NARROWEST_RAD: f64 = 0.05;
+const WIDEST_RAD: f64 = 2.6;
+
+/// The gaze that one flat picture can show: as wide as asked, or as wide as it can be.
+#[must_use]
+pub fn flat(gaze: Gaze) -> Gaze {
+    Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(NARROWEST_RAD, WIDEST_RAD), ..gaze }
+}
 
 /// A pinhole camera without roll. Its axes in the world are forward = (sin h cos e, cos h cos e, sin e),
 /// right = (cos h, -sin h, 0) and up = right x forward (Matterport3D's and the world frame's conventions).
@@ -38,6 +49,14 @@ impl Camera {
             width,
             height,
         }
+    }
+
+    /// The level camera of a gaze, for a picture of `width` and `height` pixels.
+    #[must_use]
+    pub fn level(position: DVec3, gaze: Gaze, [width, height]: [u32; 2]) -> Self {
+        let aspect = f64::from(height) / f64::from(width.max(1));
+        let vertical_fov_rad = 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect);
+        Self { position, heading_rad: gaze.heading.rad(), elevation_rad: 0.0, vertical_fov_rad, width, height }
     }
 
     /// Rotation whose columns are right, up and backward (-forward) in the world: the camera frame is GL's.

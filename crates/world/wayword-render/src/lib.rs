@@ -52,7 +52,7 @@ mod view;
 mod visibility;
 
 pub use background::Background;
-pub use camera::Camera;
+pub use camera::{Camera, flat};
 pub use cubemap::{CubeMap, CubeMapError, Face, sample_view};
 pub use evident::{box_corners, evident_objects};
 pub use mesh::{Material, Mesh};

@@ -93,7 +93,7 @@ impl Home {
 
     /// What is seen from an eye: a picture if `pictured`, and labels if the scene has semantics.
     pub(super) fn view(&self, eye: DVec3, gaze: Gaze, size: [u32; 2], pictured: bool) -> Result<View, PlatformError> {
-        let camera = camera(eye, gaze, size);
+        let camera = Camera::level(eye, gaze, size);
         let image = pictured.then(|| self.image(&camera)).transpose()?;
         let truth = match &self.semantics {
             Some(semantics) => Some(GroundTruth {
@@ -108,7 +108,7 @@ impl Home {
 
     /// How far away is what is seen from an eye.
     pub(super) fn depth(&self, eye: DVec3, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
-        let picture = render(&self.scene, &camera(eye, gaze, size)).map_err(|error| self.refused(&error))?;
+        let picture = render(&self.scene, &Camera::level(eye, gaze, size)).map_err(|error| self.refused(&error))?;
         Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
     }
 
@@ -132,7 +132,7 @@ impl Home {
     pub(super) fn labels_around(&self, eye: DVec3, heading: Heading) -> Result<Vec<Label>, PlatformError> {
         let Some(semantics) = &self.semantics else { return Ok(Vec::new()) };
         let quarters = Gaze::around(heading).into_iter();
-        let labels = quarters.map(|gaze| semantics.labels(&camera(eye, gaze, [320, 240]), gaze));
+        let labels = quarters.map(|gaze| semantics.labels(&Camera::level(eye, gaze, [320, 240]), gaze));
         let labels: Result<Vec<Vec<Label>>, RenderError> = labels.collect();
         Ok(labels.map_err(|error| self.refused(&error))?.into_iter().flatten().collect())
     }
@@ -172,10 +172,4 @@ fn island(
             refused(format!("no island of its navmesh is a place to walk on, indoors or under the open sky: {listed}"))
         }),
     }
-}
-
-fn camera(eye: DVec3, gaze: Gaze, [width, height]: [u32; 2]) -> Camera {
-    let aspect = f64::from(height) / f64::from(width.max(1));
-    let vertical_fov_rad = 2.0 * libm::atan(libm::tan(gaze.horizontal_fov_rad / 2.0) * aspect);
-    Camera { position: eye, heading_rad: gaze.heading.rad(), elevation_rad: 0.0, vertical_fov_rad, width, height }
 }

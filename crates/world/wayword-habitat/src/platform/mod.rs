@@ -19,12 +19,11 @@ use wayword_core::{
     DVec3, Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent,
     SceneId, View, ViewpointGraph, ViewpointId, Way,
 };
+use wayword_render::flat;
 use wayword_world::said::Hear;
 
 /// Scenes that are kept in memory at a time: one of HM3D takes a few hundred MB.
 const READY: usize = 2;
-/// Widest field of view of one flat picture, radians.
-const WIDEST_RAD: f64 = 2.6;
 
 /// Scenes as Habitat reads them.
 pub struct HabitatPlatform {
@@ -101,13 +100,8 @@ impl HabitatPlatform {
     fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
         let home = self.home(scene)?;
         home.check(from)?;
-        home.view(from.pose.position, within_flat(gaze), [self.options.width_px, self.options.height_px], pictured)
+        home.view(from.pose.position, flat(gaze), [self.options.width_px, self.options.height_px], pictured)
     }
-}
-
-/// A gaze that one flat picture can show.
-fn within_flat(gaze: Gaze) -> Gaze {
-    Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(0.05, WIDEST_RAD), ..gaze }
 }
 
 impl Platform for HabitatPlatform {
@@ -139,7 +133,7 @@ impl Platform for HabitatPlatform {
         let home = self.home(scene)?;
         home.check(from)?;
         let size = [self.options.width_px, self.options.height_px];
-        home.depth(from.pose.position, within_flat(gaze), size).map(Some)
+        home.depth(from.pose.position, flat(gaze), size).map(Some)
     }
 
     fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {

@@ -19,14 +19,11 @@ use wayword_core::{
     Frame, Gaze, GroundTruth, Heading, Image, ObjectId, Path, PathRequest, Platform, PlatformError, Pose, SceneId,
     View, ViewpointGraph, ViewpointId,
 };
+use wayword_render::flat;
 use wayword_world::{episode_path::labels_around, graph_walk, said::Hear};
 
 /// Most scenes that a child may list.
 const MAX_SCENES: usize = 10_000;
-/// Narrowest field of view of one flat picture, radians.
-const NARROWEST_RAD: f64 = 0.05;
-/// Widest field of view of one flat picture, radians.
-const WIDEST_RAD: f64 = 2.6;
 
 /// A platform whose scenes another program provides.
 ///
@@ -110,7 +107,7 @@ impl ProcessPlatform {
         if !eye.is_finite() || eye.abs().max_element() > MAX_COORDINATE_M {
             return Err(PlatformError::NotAViewpoint { scene: scene.clone() });
         }
-        let gaze = Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(NARROWEST_RAD, WIDEST_RAD), ..gaze };
+        let gaze = flat(gaze);
         let picture = picture && self.has(Offer::Pictures);
         let pose = Pose::level(eye, gaze.heading);
         if !picture && !self.has(Offer::Labels) && !self.has(Offer::Rooms) {
