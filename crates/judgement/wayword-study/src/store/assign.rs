@@ -1,0 +1,141 @@
+//! Who gets which item: the least filled first, nobody the same route twice, and what is left behind goes back.
+
+use super::Book;
+use crate::{
+    study::{Item, StudyError},
+    token::token,
+};
+use rusqlite::params;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::seed::derive;
+
+/// How full an item is.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Filled {
+    pub(super) answered: u32,
+    /// In the hands of people whose time has not run out.
+    pub(super) live: u32,
+}
+
+impl Filled {
+    fn all(self) -> u32 {
+        self.answered + self.live
+    }
+}
+
+impl Book<'_> {
+    pub(super) fn lease_ms(&self) -> i64 {
+        i64::try_from(self.study.settings.lease_s).unwrap_or(i64::MAX / 2000).saturating_mul(1000)
+    }
+
+    /// How full each item is.
+    pub(super) fn filled(&self) -> Result<BTreeMap<u32, Filled>, StudyError> {
+        let mut count = self.db.prepare_cached(
+            "SELECT item, sum(state = 'answered'), sum(state = 'live' AND lease_ms > ?1) FROM slot \
+             WHERE position IS NOT NULL GROUP BY item",
+        )?;
+        let counts = count
+            .query_map([self.now_ms], |row| Ok((row.get(0)?, Filled { answered: row.get(1)?, live: row.get(2)? })))?;
+        Ok(counts.collect::<Result<_, _>>()?)
+    }
+
+    /// Whether one more person would find something to do, when all who are at it go on to their end.
+    pub(super) fn has_room(&self) -> Result<bool, StudyError> {
+        let filled = self.filled()?;
+        let per_item = self.study.plan.per_item;
+        let free =
+            |item: &Item| u64::from(per_item.saturating_sub(filled.get(&item.id).copied().unwrap_or_default().all()));
+        let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free).sum();
+        let pending: i64 = self.db.query_row(
+            "SELECT coalesce(sum(max(0, expected - (SELECT count(*) FROM slot WHERE person = person.id AND position IS NOT NULL \
+             AND (state = 'answered' OR (state = 'live' AND lease_ms > ?1))))), 0) \
+             FROM person WHERE status = 'started' AND seen_ms > ?2",
+            params![self.now_ms, self.now_ms - self.lease_ms()],
+            |row| row.get(0),
+        )?;
+        Ok(open > pending.unsigned_abs())
+    }
+
+    /// Gives a person the item for practice, if the study has one.
+    pub(super) fn hand_out_practice(&self, person: i64) -> Result<bool, StudyError> {
+        let practice = self.study.items.iter().find(|item| item.is_practice);
+        let Some(item) = practice else { return Ok(false) };
+        self.hand_out(person, item, None)?;
+        Ok(true)
+    }
+
+    /// Gives a person the next item: among those that are least filled one whose condition the person had least, and among
+    /// these one by the seed. `false` where nothing is left for this person.
+    pub(super) fn hand_out_next(&self, person: i64) -> Result<bool, StudyError> {
+        let filled = self.filled()?;
+        let (had, name) = self.had(person)?;
+        let routes: BTreeSet<u32> = had.iter().map(|item| item.route).collect();
+        let mut conditions: BTreeMap<&str, u32> = BTreeMap::new();
+        for told in had.iter().filter(|item| !item.is_practice).flat_map(|item| &item.texts) {
+            *conditions.entry(&told.condition).or_default() += 1;
+        }
+        let seed = self.study.plan.seed;
+        let key = |item: &&Item| {
+            let known: u32 =
+                item.texts.iter().map(|told| conditions.get(told.condition.as_str()).copied().unwrap_or(0)).sum();
+            (
+                filled.get(&item.id).copied().unwrap_or_default().all(),
+                known,
+                derive(seed, &["item", &name, &item.id.to_string()]),
+            )
+        };
+        let open = |item: &&Item| {
+            let all = filled.get(&item.id).copied().unwrap_or_default().all();
+            !item.is_practice && all < self.study.plan.per_item && !routes.contains(&item.route)
+        };
+        let Some(item) = self.study.items.iter().filter(open).min_by_key(key) else { return Ok(false) };
+        let position = had.iter().filter(|item| !item.is_practice).count();
+        self.hand_out(person, item, u32::try_from(position).ok())?;
+        Ok(true)
+    }
+
+    /// The items that a person had in hand so far, and the person's id in the results.
+    fn had(&self, person: i64) -> Result<(Vec<&Item>, String), StudyError> {
+        let name: String = self.db.query_row("SELECT name FROM person WHERE id = ?1", [person], |row| row.get(0))?;
+        let mut slots = self.db.prepare_cached("SELECT item FROM slot WHERE person = ?1")?;
+        let ids: Vec<u32> = slots.query_map([person], |row| row.get(0))?.collect::<Result<_, _>>()?;
+        Ok((ids.into_iter().filter_map(|id| self.study.items.get(id as usize)).collect(), name))
+    }
+
+    fn hand_out(&self, person: i64, item: &Item, position: Option<u32>) -> Result<(), StudyError> {
+        let name = token()
+            .map_err(|error| StudyError::refused(format!("the system has no randomness: {error}"), "try again"))?;
+        let is_turned = derive(self.study.plan.seed, &["sides", &name]) % 2 == 1;
+        self.db.execute(
+            "INSERT INTO slot (name, person, item, route, position, state, lease_ms, given_ms, is_turned) \
+             VALUES (?1, ?2, ?3, ?4, ?5, 'live', ?6, ?7, ?8)",
+            params![name, person, item.id, item.route, position, self.now_ms + self.lease_ms(), self.now_ms, is_turned],
+        )?;
+        Ok(())
+    }
+
+    /// Keeps an item in a person's hands. Where the time ran out and others have filled the item, it goes back, and `false` is
+    /// returned.
+    pub(super) fn hold(&self, slot: i64, item: u32, lease_ms: i64, is_practice: bool) -> Result<bool, StudyError> {
+        let until_ms = self.now_ms + self.lease_ms();
+        let is_over = lease_ms <= self.now_ms;
+        if is_over
+            && !is_practice
+            && self.filled()?.get(&item).copied().unwrap_or_default().all() >= self.study.plan.per_item
+        {
+            self.db.execute("UPDATE slot SET state = 'returned' WHERE id = ?1 AND state = 'live'", [slot])?;
+            return Ok(false);
+        }
+        // A lease is written anew only when a tenth of it is gone: pages that are only looked at cost no write.
+        if is_over || until_ms - lease_ms > self.lease_ms() / 10 {
+            self.db.execute("UPDATE slot SET lease_ms = ?2 WHERE id = ?1", params![slot, until_ms])?;
+        }
+        Ok(true)
+    }
+
+    /// What a person holds goes back.
+    pub(super) fn give_back(&self, person: i64) -> Result<(), StudyError> {
+        self.db.execute("UPDATE slot SET state = 'returned' WHERE person = ?1 AND state = 'live'", [person])?;
+        Ok(())
+    }
+}

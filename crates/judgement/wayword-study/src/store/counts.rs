@@ -1,0 +1,82 @@
+//! How far a study is.
+
+use super::{Book, people};
+use crate::study::{Status, StudyError};
+use rusqlite::params;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// How far a study is.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Progress {
+    /// Whether it takes no more answers.
+    pub is_closed: bool,
+    /// One row for each condition; in pairs for each pair of conditions.
+    pub rows: Vec<Row>,
+    /// How many participants there are of each status.
+    pub participants: BTreeMap<Status, u32>,
+    /// How many of the started ones gave a sign of life within the lease.
+    pub live: u32,
+    /// How many were forgotten.
+    pub forgotten: u64,
+    /// Personal links that nobody has used.
+    pub unused_links: u32,
+}
+
+/// How far the items of a condition are.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Row {
+    /// The condition, or two with ` | ` between them.
+    pub condition: String,
+    /// How many items.
+    pub items: u32,
+    /// How many answers they shall have.
+    pub wanted: u32,
+    /// How many they have.
+    pub answered: u32,
+    /// How many items are in the hands of people.
+    pub live: u32,
+    /// The fewest answers of an item, and the most.
+    pub answered_per_item: (u32, u32),
+}
+
+impl Book<'_> {
+    /// How far the study is.
+    pub(crate) fn progress(&self) -> Result<Progress, StudyError> {
+        let filled = self.filled()?;
+        let mut rows: Vec<Row> = Vec::new();
+        for item in self.study.items.iter().filter(|item| !item.is_practice) {
+            let names: Vec<&str> = item.texts.iter().map(|told| told.condition.as_str()).collect();
+            let condition = names.join(" | ");
+            let at = filled.get(&item.id).copied().unwrap_or_default();
+            let found = rows.iter().position(|row| row.condition == condition);
+            let row = match found {
+                Some(found) => &mut rows[found],
+                None => {
+                    let answered_per_item = (u32::MAX, 0);
+                    rows.push(Row { condition, items: 0, wanted: 0, answered: 0, live: 0, answered_per_item });
+                    let last = rows.len() - 1;
+                    &mut rows[last]
+                }
+            };
+            row.items += 1;
+            row.wanted += self.study.plan.per_item;
+            row.answered += at.answered;
+            row.live += at.live;
+            let (least, most) = row.answered_per_item;
+            row.answered_per_item = (least.min(at.answered), most.max(at.answered));
+        }
+        let mut counts = self.db.prepare("SELECT status, count(*) FROM person GROUP BY status")?;
+        let participants =
+            counts.query_map([], |row| Ok((people::status_of(row, 0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
+        let unused = "SELECT count(*) FROM link WHERE hash NOT IN (SELECT link FROM person)";
+        Ok(Progress {
+            is_closed: self.is_closed()?,
+            rows,
+            participants,
+            live: self.live()?,
+            forgotten: people::forgotten(self)?,
+            unused_links: self.db.query_row(unused, params![], |row| row.get(0))?,
+        })
+    }
+}

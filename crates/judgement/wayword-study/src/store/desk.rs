@@ -1,0 +1,106 @@
+//! One thread that writes for all requests. What waits at the same time is written as one transaction (a group commit), and nobody is
+//! told that something is kept before it is on disk.
+
+use super::{Book, Store};
+use crate::study::{Study, StudyError};
+use rusqlite::TransactionBehavior;
+use std::{
+    sync::{Arc, mpsc},
+    thread::{self, JoinHandle},
+    time::{SystemTime, UNIX_EPOCH},
+};
+use tokio::sync::oneshot;
+
+/// Most requests in one transaction.
+const TOGETHER: usize = 64;
+/// Most requests that wait.
+const WAITING: usize = 1024;
+
+/// The store cannot take it now: trying again is safe.
+#[derive(Debug)]
+pub(crate) struct Busy;
+
+/// Says what came of the work: the argument is whether it is on disk.
+type Deliver = Box<dyn FnOnce(bool) + Send>;
+type Job = Box<dyn FnOnce(&Book<'_>) -> (bool, Deliver) + Send>;
+
+/// Where requests hand in their work. Clones share one thread, which ends with the last of them.
+#[derive(Clone)]
+pub(crate) struct Desk {
+    jobs: mpsc::SyncSender<Job>,
+}
+
+impl Desk {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// When the database cannot be opened, or the system has no thread.
+    pub(crate) fn open(study: Arc<Study>) -> Result<(Self, JoinHandle<()>), StudyError> {
+        let mut store = Store::open(&study.database())?;
+        let (jobs, waiting) = mpsc::sync_channel::<Job>(WAITING);
+        let thread = thread::Builder::new()
+            .name("study-desk".to_owned())
+            .spawn(move || {
+                while let Ok(first) = waiting.recv() {
+                    let batch: Vec<Job> = std::iter::once(first).chain(waiting.try_iter().take(TOGETHER - 1)).collect();
+                    work(&mut store, &study, batch);
+                }
+            })
+            .map_err(StudyError::io("study-desk", "start the thread"))?;
+        Ok((Self { jobs }, thread))
+    }
+
+    /// Does something in a transaction, and returns when it is on disk. `Err(Busy)` where it is not: nothing was written.
+    pub(crate) async fn ask<T: Send + 'static>(
+        &self,
+        work: impl FnOnce(&Book<'_>) -> Result<T, StudyError> + Send + 'static,
+    ) -> Result<T, Busy> {
+        let (reply, answer) = oneshot::channel();
+        let job: Job = Box::new(move |book| {
+            let done = work(book);
+            let is_good = done.is_ok();
+            let deliver: Deliver = Box::new(move |is_kept| {
+                // Somebody who has gone away needs no reply.
+                let _ = reply.send(done.ok().filter(|_| is_kept));
+            });
+            (is_good, deliver)
+        });
+        self.jobs.try_send(job).map_err(|_| Busy)?;
+        answer.await.ok().flatten().ok_or(Busy)
+    }
+}
+
+fn work(store: &mut Store, study: &Study, batch: Vec<Job>) {
+    let mut replies: Vec<(bool, Deliver)> = Vec::new();
+    let is_kept = together(store, study, batch, &mut replies).is_ok();
+    for (is_good, deliver) in replies {
+        deliver(is_kept && is_good);
+    }
+}
+
+/// Each piece of work has a savepoint: one that fails takes nothing of the others with it.
+fn together(
+    store: &mut Store,
+    study: &Study,
+    batch: Vec<Job>,
+    replies: &mut Vec<(bool, Deliver)>,
+) -> Result<(), rusqlite::Error> {
+    let mut transaction = store.db.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    for job in batch {
+        let savepoint = transaction.savepoint()?;
+        let (is_good, deliver) = job(&Book { db: &savepoint, study, now_ms: now_ms() });
+        replies.push((is_good, deliver));
+        if is_good {
+            savepoint.commit()?;
+        } else {
+            savepoint.finish()?;
+        }
+    }
+    transaction.commit()
+}
+
+/// Unix time, milliseconds.
+pub(crate) fn now_ms() -> i64 {
+    let passed = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(passed.as_millis()).unwrap_or(i64::MAX)
+}

@@ -1,0 +1,319 @@
+//! Who takes part: arrival, consent, the way back in, and the way out.
+
+use super::{Book, stage::Stage};
+use crate::{
+    study::{Recruiter, Status, StudyError},
+    token::{hash, is_token, token},
+};
+use rusqlite::{OptionalExtension as _, Row, params};
+use serde::{Deserialize, Serialize};
+
+/// How long a session lasts, milliseconds. Then the link leads in again.
+const SESSION_MS: i64 = 7 * 24 * 3600 * 1000;
+/// Most sessions of one person; the oldest end.
+const SESSIONS: i64 = 8;
+/// Longest id of a recruiter.
+const LONGEST_ID: usize = 128;
+
+/// What somebody comes with.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Arrival {
+    /// A personal link.
+    Link(String),
+    /// A recruiter's.
+    Recruit { person: String, study: String, session: String },
+}
+
+impl Arrival {
+    /// Whether it has the form that links have.
+    pub(crate) fn is_plain(&self) -> bool {
+        let is_id = |id: &str| {
+            id.len() <= LONGEST_ID
+                && id.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_' | b'.' | b':'))
+        };
+        match self {
+            Self::Link(token) => is_token(token),
+            Self::Recruit { person, study, session } => {
+                !person.is_empty() && !session.is_empty() && [person, study, session].into_iter().all(|id| is_id(id))
+            }
+        }
+    }
+
+    fn hash(&self) -> [u8; 32] {
+        match self {
+            Self::Link(token) => hash(&["link", token]),
+            Self::Recruit { person, study, session } => hash(&["recruit", person, study, session]),
+        }
+    }
+}
+
+/// Where an arrival leads.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Entry {
+    /// To where the person was, in a new session.
+    Back(String),
+    /// To the consent.
+    New,
+    /// Nowhere: nobody made this link, or it is another study's.
+    Unknown,
+    /// Nowhere: the same person came by another link of the recruiter before.
+    Twice,
+    /// Nowhere at the moment: all places are taken.
+    Full,
+    /// Nowhere: the study is over.
+    Closed,
+}
+
+/// How it ended for a participant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Outcome {
+    pub(crate) status: Status,
+    pub(crate) answers: u32,
+}
+
+/// What happens to the answers of somebody who stops.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Withdrawal {
+    Keep,
+    Delete,
+}
+
+/// Personal links that were made.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Invited {
+    /// Tokens: a link is the site's address, `/t/` and a token. They are not kept, only their hashes are.
+    pub tokens: Vec<String>,
+}
+
+/// What `forget` removes, or would remove.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Forgotten {
+    /// The participant.
+    pub participant: String,
+    /// How many answers.
+    pub answers: u32,
+    /// How many items in all, answered or not.
+    pub items: u32,
+    /// Whether it was done.
+    pub is_done: bool,
+}
+
+impl Book<'_> {
+    /// Makes personal links.
+    pub(crate) fn invite(&self, count: u32) -> Result<Invited, StudyError> {
+        let mut tokens = Vec::new();
+        for _ in 0..count {
+            let token = fresh()?;
+            let link = Arrival::Link(token.clone()).hash();
+            self.db.execute("INSERT INTO link (hash, made_ms) VALUES (?1, ?2)", params![link, self.now_ms])?;
+            tokens.push(token);
+        }
+        Ok(Invited { tokens })
+    }
+
+    /// Where an arrival leads. Nothing is written but the session of somebody who is known.
+    pub(crate) fn enter(&self, arrival: &Arrival) -> Result<Entry, StudyError> {
+        if !arrival.is_plain() {
+            return Ok(Entry::Unknown);
+        }
+        if let Some(person) = self.by_link(arrival)? {
+            return Ok(Entry::Back(self.session_for(person)?));
+        }
+        match arrival {
+            Arrival::Link(_) => {
+                let made = self.db.query_row("SELECT 1 FROM link WHERE hash = ?1", [arrival.hash()], |_| Ok(()));
+                if self.study.settings.recruiter != Recruiter::Links || made.optional()?.is_none() {
+                    return Ok(Entry::Unknown);
+                }
+            }
+            Arrival::Recruit { person, study, .. } => {
+                let Recruiter::Parameters { only_study, .. } = &self.study.settings.recruiter else {
+                    return Ok(Entry::Unknown);
+                };
+                if !only_study.is_empty() && only_study != study {
+                    return Ok(Entry::Unknown);
+                }
+                let known = self.db.query_row("SELECT 1 FROM recruit WHERE id = ?1", [person], |_| Ok(()));
+                if known.optional()?.is_some() {
+                    return Ok(Entry::Twice);
+                }
+            }
+        }
+        if self.is_closed()? {
+            return Ok(Entry::Closed);
+        }
+        Ok(if self.has_room()? { Entry::New } else { Entry::Full })
+    }
+
+    /// Takes somebody in who consented to the text with this hash. The same arrival again leads to the same person.
+    pub(crate) fn consent(&self, arrival: &Arrival, consent: &str) -> Result<Entry, StudyError> {
+        let entry = self.enter(arrival)?;
+        if entry != Entry::New {
+            return Ok(entry);
+        }
+        self.db.execute(
+            "INSERT INTO person (name, link, status, consent, consented_ms, seen_ms, understood, expected) \
+             VALUES (?1, ?2, 'started', ?3, ?4, ?4, ?5, ?6)",
+            params![
+                fresh()?,
+                arrival.hash(),
+                consent,
+                self.now_ms,
+                self.study.settings.questions.is_empty(),
+                self.study.plan.per_participant
+            ],
+        )?;
+        let person = self.db.last_insert_rowid();
+        if let Arrival::Recruit { person: id, study, session } = arrival {
+            let row = params![person, id, study, session];
+            self.db.execute("INSERT INTO recruit (person, id, study, session) VALUES (?1, ?2, ?3, ?4)", row)?;
+        }
+        Ok(Entry::Back(self.session_for(person)?))
+    }
+
+    /// Whose session it is, and a sign of life.
+    pub(crate) fn whose(&self, session: &str) -> Result<Option<i64>, StudyError> {
+        if !is_token(session) {
+            return Ok(None);
+        }
+        let row = params![hash(&["session", session]), self.now_ms - SESSION_MS];
+        let found =
+            self.db.query_row("SELECT person FROM session WHERE hash = ?1 AND made_ms > ?2", row, |row| row.get(0));
+        let person: Option<i64> = found.optional()?;
+        if let Some(person) = person {
+            let seen = "UPDATE person SET seen_ms = ?2 WHERE id = ?1 AND seen_ms < ?2 - 1000";
+            self.db.execute(seen, params![person, self.now_ms])?;
+        }
+        Ok(person)
+    }
+
+    /// Ends the participation of somebody.
+    pub(crate) fn withdraw(&self, person: i64, what: Withdrawal) -> Result<(), StudyError> {
+        match what {
+            Withdrawal::Delete => self.erase(person),
+            Withdrawal::Keep => {
+                self.give_back(person)?;
+                let ended =
+                    "UPDATE person SET status = 'withdrawn', finished_ms = ?2 WHERE id = ?1 AND status = 'started'";
+                self.db.execute(ended, params![person, self.now_ms])?;
+                Ok(())
+            }
+        }
+    }
+
+    /// Removes all that somebody gave, or counts it for a dry run. `participant` is an id of ours or the recruiter's.
+    pub(crate) fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
+        let find =
+            "SELECT id, name FROM person WHERE name = ?1 OR id IN (SELECT person FROM recruit WHERE recruit.id = ?1)";
+        let found = self.db.query_row(find, [participant], |row| Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?)));
+        let Some((person, name)) = found.optional()? else {
+            let problem = format!("there is no participant {participant}");
+            return Err(StudyError::refused(
+                problem,
+                "`wayword study status STUDY --participants` lists them; forgotten ones are gone",
+            ));
+        };
+        let count = "SELECT count(*), count(answer) FROM slot WHERE person = ?1";
+        let (items, answers) = self.db.query_row(count, [person], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        if !is_dry {
+            self.erase(person)?;
+        }
+        Ok(Forgotten { participant: name, answers, items, is_done: !is_dry })
+    }
+
+    fn erase(&self, person: i64) -> Result<(), StudyError> {
+        let link: Option<[u8; 32]> =
+            self.db.query_row("SELECT link FROM person WHERE id = ?1", [person], |row| row.get(0)).optional()?;
+        self.db.execute("DELETE FROM link WHERE hash = ?1", [link])?;
+        if self.db.execute("DELETE FROM person WHERE id = ?1", [person])? > 0 {
+            self.set_meta("forgotten", &(forgotten(self)? + 1).to_string())?;
+        }
+        Ok(())
+    }
+
+    /// Takes no more answers, and drops what recruiters call the participants. Returns how many are in the middle of it.
+    pub(crate) fn close(&self, even_if_live: bool) -> Result<u32, StudyError> {
+        let live = self.live()?;
+        if live == 0 || even_if_live {
+            if !self.is_closed()? {
+                self.set_meta("closed_ms", &self.now_ms.to_string())?;
+            }
+            self.db.execute("DELETE FROM recruit", [])?;
+        }
+        Ok(live)
+    }
+
+    /// How many are in the middle of it.
+    pub(crate) fn live(&self) -> Result<u32, StudyError> {
+        let since_ms = self.now_ms - self.lease_ms();
+        let count = "SELECT count(*) FROM person WHERE status = 'started' AND seen_ms > ?1";
+        Ok(self.db.query_row(count, [since_ms], |row| row.get(0))?)
+    }
+
+    /// How a participation ended; `None` while it goes on.
+    pub(super) fn outcome(&self, person: i64) -> Result<Option<Outcome>, StudyError> {
+        let find = "SELECT status, (SELECT count(*) FROM slot WHERE person = person.id AND state = 'answered' AND position IS NOT NULL) \
+                    FROM person WHERE id = ?1";
+        let (status, answers) = self.db.query_row(find, [person], |row| Ok((status_of(row, 0)?, row.get(1)?)))?;
+        Ok((status != Status::Started).then_some(Outcome { status, answers }))
+    }
+
+    /// Ends it, and says how.
+    pub(super) fn end(&self, person: i64, status: Status) -> Result<Stage, StudyError> {
+        let ended = "UPDATE person SET status = ?2, finished_ms = ?3, expected = \
+                     (SELECT count(*) FROM slot WHERE person = person.id AND state = 'answered' AND position IS NOT NULL) WHERE id = ?1";
+        self.db.execute(ended, params![person, name_of(status), self.now_ms])?;
+        let answers = self.db.query_row("SELECT expected FROM person WHERE id = ?1", [person], |row| row.get(0))?;
+        Ok(Stage::Over(Outcome { status, answers }))
+    }
+
+    fn by_link(&self, arrival: &Arrival) -> Result<Option<i64>, StudyError> {
+        let find = "SELECT id FROM person WHERE link = ?1";
+        Ok(self.db.query_row(find, [arrival.hash()], |row| row.get(0)).optional()?)
+    }
+
+    fn session_for(&self, person: i64) -> Result<String, StudyError> {
+        let session = fresh()?;
+        let made = "INSERT INTO session (hash, person, made_ms) VALUES (?1, ?2, ?3)";
+        self.db.execute(made, params![hash(&["session", &session]), person, self.now_ms])?;
+        let old = "DELETE FROM session WHERE person = ?1 AND rowid NOT IN \
+                   (SELECT rowid FROM session WHERE person = ?1 ORDER BY made_ms DESC, rowid DESC LIMIT ?2)";
+        self.db.execute(old, params![person, SESSIONS])?;
+        Ok(session)
+    }
+}
+
+fn fresh() -> Result<String, StudyError> {
+    token().map_err(|error| StudyError::refused(format!("the system has no randomness: {error}"), "try again"))
+}
+
+/// How many participants were forgotten.
+pub(super) fn forgotten(book: &Book<'_>) -> Result<u64, StudyError> {
+    Ok(book.meta("forgotten")?.and_then(|count| count.parse().ok()).unwrap_or(0))
+}
+
+pub(super) fn name_of(status: Status) -> &'static str {
+    match status {
+        Status::Started => "started",
+        Status::Complete => "complete",
+        Status::Withdrawn => "withdrawn",
+        Status::ScreenedOut => "screened_out",
+        Status::AttentionFailed => "attention_failed",
+    }
+}
+
+pub(super) fn status_of(row: &Row<'_>, column: usize) -> Result<Status, rusqlite::Error> {
+    let name: String = row.get(column)?;
+    let all = [Status::Started, Status::Complete, Status::Withdrawn, Status::ScreenedOut, Status::AttentionFailed];
+    let found = all.into_iter().find(|status| name_of(*status) == name);
+    found.ok_or_else(|| unreadable(column, format!("unknown status {name}")))
+}
+
+/// An error for a value that this program did not write.
+pub(super) fn unreadable(
+    column: usize,
+    error: impl Into<Box<dyn std::error::Error + Send + Sync + 'static>>,
+) -> rusqlite::Error {
+    rusqlite::Error::FromSqlConversionFailure(column, rusqlite::types::Type::Text, error.into())
+}

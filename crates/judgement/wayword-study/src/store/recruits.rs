@@ -1,0 +1,138 @@
+//! What a recruiter's list says of the participants, beside what we know. Its status is imported, never assumed.
+
+use super::{Book, people};
+use crate::study::{Status, StudyError};
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+/// Names of the column with the participant's id: Prolific's, MTurk's, and what others use.
+const PERSON: [&str; 5] = ["participant id", "participant_id", "prolific_pid", "workerid", "participant"];
+/// Names of the column with the status.
+const STATUS: [&str; 3] = ["status", "assignmentstatus", "submission status"];
+
+/// One participant in both lists.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Reconciled {
+    /// The recruiter's id.
+    pub recruiter_id: String,
+    /// Our id, where we know the participant.
+    pub participant: Option<String>,
+    /// What we say.
+    pub ours: Option<Status>,
+    /// What the recruiter says, as in its file.
+    pub theirs: Option<String>,
+    /// What does not agree; `None` where all is well.
+    pub problem: Option<&'static str>,
+}
+
+/// Both lists beside each other.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Reconciliation {
+    /// Everybody, those with a problem first.
+    pub rows: Vec<Reconciled>,
+    /// How many have a problem.
+    pub problems: usize,
+}
+
+impl Book<'_> {
+    /// Holds the recruiter's list against ours.
+    pub(crate) fn reconcile(&self, file: &Path) -> Result<Reconciliation, StudyError> {
+        let theirs = read(file)?;
+        let mut find = self.db.prepare(
+            "SELECT recruit.id, person.name, person.status FROM recruit JOIN person ON person.id = recruit.person",
+        )?;
+        let ours: BTreeMap<String, (String, Status)> = find
+            .query_map([], |row| Ok((row.get(0)?, (row.get(1)?, people::status_of(row, 2)?))))?
+            .collect::<Result<_, _>>()?;
+        if ours.is_empty() {
+            let problem = "no participant has a recruiter's id";
+            return Err(StudyError::refused(
+                problem,
+                "ids are dropped when a study is closed: reconcile first, then close",
+            ));
+        }
+        let ids: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
+        let row = |id: &String| {
+            let (our, their) = (ours.get(id), theirs.get(id));
+            Reconciled {
+                recruiter_id: id.clone(),
+                participant: our.map(|(name, _)| name.clone()),
+                ours: our.map(|(_, status)| *status),
+                theirs: their.cloned(),
+                problem: problem(our.map(|(_, status)| *status), their.map(String::as_str)),
+            }
+        };
+        let mut rows: Vec<Reconciled> = ids.into_iter().map(row).collect();
+        rows.sort_by_key(|row| row.problem.is_none());
+        let problems = rows.iter().filter(|row| row.problem.is_some()).count();
+        Ok(Reconciliation { rows, problems })
+    }
+}
+
+/// What does not agree. The names are Prolific's and MTurk's.
+fn problem(ours: Option<Status>, theirs: Option<&str>) -> Option<&'static str> {
+    let theirs = theirs.map(|status| status.trim().to_ascii_uppercase().replace(['-', '_'], " "));
+    let is_paid = matches!(theirs.as_deref(), Some("APPROVED" | "AWAITING REVIEW" | "SUBMITTED"));
+    let is_out = matches!(theirs.as_deref(), Some("RETURNED" | "TIMED OUT" | "REJECTED" | "ABANDONED"));
+    match (ours, theirs.as_deref()) {
+        (None, None) => None,
+        (None, Some(_)) if is_paid => Some("they list it as done, and we know nobody of this id"),
+        (None, Some(_)) => None,
+        (Some(_), None) => Some("we know this participant, and their list does not"),
+        (Some(Status::Complete), _) if is_out => Some("all our answers are there, and they list it as not done"),
+        (Some(Status::Started | Status::Withdrawn | Status::ScreenedOut), _) if is_paid => {
+            Some("they list it as done, and our answers are not complete")
+        }
+        (Some(Status::AttentionFailed), Some("APPROVED")) => Some("approved, and the attention checks failed"),
+        (Some(Status::Started), _) if is_out => {
+            Some("started here, and over there: its item returns when the time runs out")
+        }
+        _ => None,
+    }
+}
+
+/// Ids and statuses of a recruiter's file.
+fn read(file: &Path) -> Result<BTreeMap<String, String>, StudyError> {
+    let wrong = |problem: String| StudyError::File {
+        path: file.to_owned(),
+        problem,
+        hint: "give the CSV that the recruiter exports, with a column `Participant id` (or `WorkerId`) and a column `Status`",
+    };
+    let mut reader =
+        csv::ReaderBuilder::new().flexible(true).from_path(file).map_err(|error| wrong(error.to_string()))?;
+    let headers = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+    let column = |names: &[&str]| {
+        headers.iter().position(|header| {
+            names.contains(&header.trim_start_matches('\u{feff}').trim().to_ascii_lowercase().as_str())
+        })
+    };
+    let (Some(person), Some(status)) = (column(&PERSON), column(&STATUS)) else {
+        return Err(wrong("it has no column of participants, or none of their status".to_owned()));
+    };
+    let mut all = BTreeMap::new();
+    for row in reader.records() {
+        let row = row.map_err(|error| wrong(error.to_string()))?;
+        if let (Some(person), Some(status)) = (row.get(person), row.get(status)) {
+            all.insert(person.trim().to_owned(), status.trim().to_owned());
+        }
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_agree_is_told() {
+        assert_eq!(problem(Some(Status::Complete), Some("AWAITING REVIEW")), None);
+        assert!(problem(Some(Status::Complete), Some("TIMED-OUT")).unwrap().contains("not done"));
+        assert!(problem(Some(Status::Started), Some("APPROVED")).unwrap().contains("not complete"));
+        assert!(problem(None, Some("Approved")).unwrap().contains("nobody"));
+        assert_eq!(problem(None, Some("RETURNED")), None);
+        assert!(problem(Some(Status::Started), None).is_some());
+    }
+}

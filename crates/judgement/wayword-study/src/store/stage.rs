@@ -1,0 +1,157 @@
+//! Where a participant is, and what comes next. It stands in the database alone, so that a reload, a second tab and another device
+//! show the same.
+
+use super::{Book, people::Outcome};
+use crate::study::{Item, Mode, Route, Scene, Status, StudyError};
+use rusqlite::{OptionalExtension as _, params};
+use wayword_core::{ViewpointId, seed::derive};
+
+/// A study of this length or longer needs two failed checks (Prolific's rule), minutes.
+const LONG_MINUTES: u32 = 5;
+/// Levels that an attention check may ask for: not the middle one, which people choose without reading.
+const ASKED: [u8; 4] = [1, 2, 4, 5];
+
+/// Where a participant is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// At the questions about the task.
+    Understood { attempt: u32 },
+    /// At an item.
+    Item(Held),
+    /// At an attention check that asks for a level.
+    Attention { number: u32, level: u8 },
+    /// At the end.
+    Over(Outcome),
+}
+
+/// An item in somebody's hands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Held {
+    pub(super) id: i64,
+    pub(super) lease_ms: i64,
+    /// Its name on pages.
+    pub(crate) slot: String,
+    /// Its number.
+    pub(crate) item: u32,
+    pub(crate) is_practice: bool,
+    pub(crate) is_turned: bool,
+    pub(crate) own_text: Option<String>,
+    /// Whether the walker has stopped.
+    pub(crate) stopped_ms: Option<i64>,
+    pub(crate) looks: u32,
+    /// Where the walker went, without the start.
+    pub(crate) moves: Vec<ViewpointId>,
+}
+
+/// How many of a person's items are answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Done {
+    pub(crate) answered: u32,
+    pub(crate) expected: u32,
+}
+
+impl Book<'_> {
+    /// Where a person is; hands out the next item where one is due, and ends it where all is answered.
+    pub(crate) fn stage(&self, person: i64) -> Result<Stage, StudyError> {
+        if let Some(outcome) = self.outcome(person)? {
+            return Ok(Stage::Over(outcome));
+        }
+        let find = "SELECT understood, misunderstood FROM person WHERE id = ?1";
+        let (understood, attempt) =
+            self.db.query_row(find, [person], |row| Ok((row.get::<_, bool>(0)?, row.get(1)?)))?;
+        if !understood {
+            return Ok(Stage::Understood { attempt });
+        }
+        if let Some(held) = self.held(person)?
+            && self.hold(held.id, held.item, held.lease_ms, held.is_practice)?
+        {
+            return Ok(Stage::Item(held));
+        }
+        let had: bool =
+            self.db.query_row("SELECT EXISTS (SELECT 1 FROM slot WHERE person = ?1)", [person], |row| row.get(0))?;
+        let is_given = if had { false } else { self.hand_out_practice(person)? };
+        let done = self.done(person)?;
+        if !is_given && let Some(number) = self.check_due(person, done)? {
+            return Ok(Stage::Attention { number, level: self.asked_level(person, number)? });
+        }
+        let is_given = is_given || (done.answered < done.expected && self.hand_out_next(person)?);
+        match self.held(person)?.filter(|_| is_given) {
+            Some(held) => Ok(Stage::Item(held)),
+            None => self
+                .end(person, if self.has_failed_checks(person)? { Status::AttentionFailed } else { Status::Complete }),
+        }
+    }
+
+    /// How many items are answered, and how many there will be.
+    pub(crate) fn done(&self, person: i64) -> Result<Done, StudyError> {
+        let find = "SELECT expected, (SELECT count(*) FROM slot WHERE person = person.id AND state = 'answered' AND position IS NOT NULL) \
+                    FROM person WHERE id = ?1";
+        Ok(self.db.query_row(find, [person], |row| Ok(Done { expected: row.get(0)?, answered: row.get(1)? }))?)
+    }
+
+    /// The item that a person holds.
+    fn held(&self, person: i64) -> Result<Option<Held>, StudyError> {
+        self.held_where("person = ?1 AND state = 'live' ORDER BY id DESC LIMIT 1", person, "")
+    }
+
+    /// An item of a person by its name on pages, in any state.
+    pub(super) fn named(&self, person: i64, slot: &str) -> Result<Option<Held>, StudyError> {
+        self.held_where("person = ?1 AND name = ?2", person, slot)
+    }
+
+    fn held_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<Held>, StudyError> {
+        let mut find = self.db.prepare_cached(&format!(
+            "SELECT id, lease_ms, name, item, position IS NULL, is_turned, own_text, stopped_ms, looks FROM slot \
+             WHERE ?2 = ?2 AND {condition}"
+        ))?;
+        let held = find.query_row(params![person, slot], |row| {
+            Ok(Held {
+                id: row.get(0)?,
+                lease_ms: row.get(1)?,
+                slot: row.get(2)?,
+                item: row.get(3)?,
+                is_practice: row.get(4)?,
+                is_turned: row.get(5)?,
+                own_text: row.get(6)?,
+                stopped_ms: row.get(7)?,
+                looks: row.get(8)?,
+                moves: Vec::new(),
+            })
+        });
+        let Some(mut held) = held.optional()? else { return Ok(None) };
+        let mut moves = self.db.prepare_cached("SELECT viewpoint FROM move WHERE slot = ?1 ORDER BY seq")?;
+        let names: Vec<String> = moves.query_map([held.id], |row| row.get(0))?.collect::<Result<_, _>>()?;
+        held.moves = names.into_iter().filter_map(|name| ViewpointId::new(name).ok()).collect();
+        Ok(Some(held))
+    }
+
+    /// The attention check that is due after so many answers.
+    fn check_due(&self, person: i64, done: Done) -> Result<Option<u32>, StudyError> {
+        let checks = self.study.settings.attention_checks;
+        let answered: u32 =
+            self.db.query_row("SELECT count(*) FROM attention WHERE person = ?1", [person], |row| row.get(0))?;
+        let due_after = (done.expected * (answered + 1)).div_ceil(checks + 1);
+        Ok((answered < checks && done.answered >= due_after).then_some(answered))
+    }
+
+    /// The level that an attention check asks this person for.
+    pub(super) fn asked_level(&self, person: i64, number: u32) -> Result<u8, StudyError> {
+        let name: String = self.db.query_row("SELECT name FROM person WHERE id = ?1", [person], |row| row.get(0))?;
+        let drawn = derive(self.study.plan.seed, &["attention", &name, &number.to_string()]);
+        Ok(ASKED[(drawn % ASKED.len() as u64) as usize])
+    }
+
+    fn has_failed_checks(&self, person: i64) -> Result<bool, StudyError> {
+        let count = "SELECT count(*) FROM attention WHERE person = ?1 AND NOT passed";
+        let failed: u32 = self.db.query_row(count, [person], |row| row.get(0))?;
+        Ok(failed >= if self.study.settings.minutes >= LONG_MINUTES { 2 } else { 1 })
+    }
+
+    /// The item, route and scene of what somebody holds.
+    pub(crate) fn of(&self, held: &Held) -> Option<(&Item, &Route, Option<&Scene>)> {
+        let item = self.study.items.get(held.item as usize)?;
+        let route = self.study.routes.get(item.route as usize)?;
+        let scene = if self.study.plan.mode == Mode::Follow { self.study.scene_of(route) } else { None };
+        Some((item, route, scene))
+    }
+}

@@ -1,0 +1,49 @@
+//! Random names that nobody can guess.
+
+use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
+use sha2::{Digest, Sha256};
+
+/// Bytes of a token: 128 bits.
+const BYTES: usize = 16;
+
+/// A new token, as it stands in a link or cookie. It comes from the system, not from the seed of the study: a seed could be guessed.
+///
+/// # Errors
+/// When the system has no randomness.
+pub(crate) fn token() -> Result<String, getrandom::Error> {
+    let mut bytes = [0; BYTES];
+    getrandom::fill(&mut bytes)?;
+    Ok(URL_SAFE_NO_PAD.encode(bytes))
+}
+
+/// Whether a text has the form of a token.
+pub(crate) fn is_token(text: &str) -> bool {
+    text.len() == 22 && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_'))
+}
+
+/// What is kept in place of a token, so that who reads the database cannot come in with it.
+pub(crate) fn hash(parts: &[&str]) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    for part in parts {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
+    }
+    hash.finalize().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tokens_differ_and_are_known_by_their_form() {
+        let (a, b) = (token().unwrap(), token().unwrap());
+        assert!(a != b && is_token(&a) && is_token(&b));
+        assert!(!is_token("") && !is_token(&format!("{}!", &a[1..])) && !is_token(&a[1..]));
+    }
+
+    #[test]
+    fn a_hash_keeps_its_parts_apart() {
+        assert_ne!(hash(&["ab", "c"]), hash(&["a", "bc"]));
+    }
+}
