@@ -1,0 +1,305 @@
+// The study works without this file: every page is a form. It adds an outbox, so that no answer is lost with the network; a film that plays; and a view that turns.
+'use strict';
+
+const $ = (what, where = document) => where.querySelector(what);
+const all = (what, where = document) => [...where.querySelectorAll(what)];
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const still = matchMedia('(prefers-reduced-motion: reduce)');
+const who = () => $('#page').dataset.who;
+// Which page this is: two tabs that show the same one need not replace it.
+const at = (doc = document) => $('main', doc).dataset.page + '/' + $('main', doc).dataset.at;
+const say = (text) => { $('#say').textContent = text; };
+const net = (text) => { if ($('#net').textContent !== text) $('#net').textContent = text; };
+
+// A browser may refuse storage (private windows, policies). Then all of this works until the page is closed.
+function stored(kind) {
+  const safely = (act) => { try { return act(window[kind]); } catch { return null; } };
+  return {
+    get: (key) => safely((box) => box.getItem(key)),
+    set: (key, value) => safely((box) => box.setItem(key, value)),
+    drop: (key) => safely((box) => box.removeItem(key)),
+    keys: () => safely((box) => Object.keys(box)) || [],
+  };
+}
+const kept = stored('localStorage');
+const tab = stored('sessionStorage');
+
+// ---- Outbox. An answer is written down before it is sent and struck out only after the server has said that it is on disk.
+// The key has the person's mark, so that on a shared machine nothing is sent in the name of the next person.
+let busy = false;
+const box = () => 'wayword-study ' + who() + ' ';
+
+async function send(answer, leftover) {
+  for (let tries = 0; ; tries += 1) {
+    const slow = setTimeout(() => net('Sending…'), 800);
+    let pause = Math.min(30000, 1000 * 2 ** tries) * (0.75 + Math.random() / 2);
+    try {
+      const stop = new AbortController();
+      const late = setTimeout(() => stop.abort(), 20000);
+      const reply = await fetch(answer.url, {
+        method: 'POST', body: new URLSearchParams(answer.body), credentials: 'same-origin', keepalive: true, signal: stop.signal,
+      });
+      const doc = new DOMParser().parseFromString(await reply.text(), 'text/html');
+      clearTimeout(late);
+      // Without our <main> it is the page of a hotel's network or of a proxy, not an answer of the server.
+      if (reply.status < 500 && reply.status !== 429 && $('main[data-page]', doc)) {
+        // 403: the session is gone, not the answer. It is sent once more when the personal link is opened again.
+        if (answer.key && (reply.status !== 403 || leftover)) kept.drop(answer.key);
+        return { reply, doc };
+      }
+      pause = Math.max(pause, 1000 * Number(reply.headers.get('Retry-After')) || 0);
+    } catch { /* no network, or too slow: the same again */ } finally { clearTimeout(slow); }
+    net('Not sent yet; trying again. Your answer is kept. Please leave this page open.');
+    await Promise.race([wait(pause), new Promise((done) => addEventListener('online', done, { once: true }))]);
+  }
+}
+
+addEventListener('submit', async (event) => {
+  const form = event.target;
+  const pressed = event.submitter;
+  event.preventDefault();
+  if (busy) return;  // a double click is one answer
+  busy = true;
+  const body = [...new FormData(form)];
+  if (pressed && pressed.name) body.push([pressed.name, pressed.value]);
+  const answer = { url: form.getAttribute('action'), body };
+  if (who()) {
+    answer.key = box() + Date.now() + ' ' + Math.random();
+    kept.set(answer.key, JSON.stringify(answer));
+  }
+  const { reply, doc } = await send(answer);
+  if (reply.ok) tab.drop(draft());
+  busy = false;
+  net('');
+  show(doc, reply);
+});
+
+// An answer that an earlier visit could not send goes first. To send it twice does no harm: the server counts it once.
+async function leftovers() {
+  if (!who()) return;
+  busy = true;
+  const keys = kept.keys().filter((key) => key.startsWith(box())).sort();
+  for (const key of keys) {
+    try { await send(JSON.parse(kept.get(key)), true); } catch { kept.drop(key); }
+  }
+  busy = false;
+  net('');
+  if (keys.length) await refresh();
+}
+
+// The server knows where the person is. This page asks when it may be old: after "back", or when another tab has sent something.
+async function refresh() {
+  if (busy || location.pathname !== '/') return;
+  try {
+    const reply = await fetch('/', { credentials: 'same-origin', cache: 'no-store' });
+    const doc = new DOMParser().parseFromString(await reply.text(), 'text/html');
+    if (!busy && reply.ok && $('main[data-page]', doc) && (at(doc) !== at() || $('#page', doc).dataset.who !== who())) show(doc, reply);
+  } catch { /* no network: the page stays as it is */ }
+}
+addEventListener('pageshow', (event) => { if (event.persisted) refresh(); });
+addEventListener('storage', (event) => { if (event.key && event.key.startsWith(box()) && !event.newValue) refresh(); });
+
+function show(doc, reply) {
+  const walked = $('.walk') && $('.walk', doc) && $('.walk').dataset.slot === $('.walk', doc).dataset.slot;
+  $('#page').replaceWith(document.adoptNode($('#page', doc)));
+  document.title = doc.title;
+  if (reply.ok) history.replaceState(null, '', reply.url);
+  start();
+  if (walked && !$('#error')) {  // a step: the eyes stay where they are, the keys go on working
+    $('.view').focus({ preventScroll: true });
+    const words = all('.ways [data-words]').map((way) => way.dataset.words);
+    say(words.length ? `You moved. Ways: ${words.join(', ')}.` : 'You moved. No way leads on from here.');
+  } else {
+    scrollTo(0, 0);
+    ($('#error') || $('h1')).focus({ preventScroll: true });
+    say($('.where label')?.textContent || '');
+  }
+}
+
+// ---- What is filled in but not sent outlives a reload.
+const draft = () => 'draft ' + who() + ' ' + at();
+addEventListener('input', (event) => {
+  const form = event.target.form;
+  if (form && who()) tab.set(draft(), JSON.stringify([...new FormData(form)]));
+});
+function redraft() {
+  for (const [name, value] of JSON.parse(tab.get(draft())) || []) {
+    for (const field of all(`[name="${CSS.escape(name)}"]`)) {
+      if (field.type === 'radio') field.checked = field.value === value;
+      else if (field.type === 'textarea') field.value = value;
+    }
+  }
+}
+
+// A picture that did not come is asked for again.
+function insist(img) {
+  let tries = 0;
+  img.addEventListener('error', () => {
+    tries += 1;
+    if (tries < 6) setTimeout(() => { img.src = img.src; }, 1000 * tries);
+  });
+  if (img.complete && !img.naturalWidth) img.src = img.src;
+}
+
+// ---- Film: one picture after another; nothing plays by itself.
+function film(section) {
+  const [img, slider, play] = ['.frame', '[type=range]', '[data-do=play]'].map((what) => $(what, section));
+  const { slot, frames, perSecond } = section.dataset;
+  const alts = all('.frames span', section).map((span) => span.textContent);
+  const ready = [img];  // pictures asked for so far
+  let n = 0;
+  let timer = 0;
+  const picture = (k) => {
+    if (!ready[k]) { ready[k] = new Image(); insist(ready[k]); ready[k].src = `/film/${slot}/${k}.jpg`; }
+    return ready[k];
+  };
+  const go = (k) => {
+    n = Math.max(0, Math.min(frames - 1, k));
+    img.src = `/film/${slot}/${n}.jpg`;
+    img.alt = alts[n] || '';
+    slider.value = n + 1;
+    slider.setAttribute('aria-valuetext', `Picture ${n + 1} of ${frames}. ${img.alt}`);
+    $('.at', section).textContent = `Picture ${n + 1} of ${frames}`;
+    for (let k = n + 1; k < Math.min(n + 5, frames); k += 1) picture(k);
+  };
+  const pause = () => { clearInterval(timer); timer = 0; play.textContent = 'Play'; };
+  const acts = {
+    back: () => { pause(); go(n - 1); },
+    next: () => { pause(); go(n + 1); },
+    play: () => {
+      if (timer) { pause(); return; }
+      if (n === frames - 1) go(0);
+      play.textContent = 'Pause';
+      timer = setInterval(() => {
+        if (!section.isConnected || n >= frames - 1) pause();
+        else if (picture(n + 1).complete) go(n + 1);  // else it waits for the network
+      }, 1000 / perSecond);
+    },
+  };
+  for (const button of all('[data-do]', section)) button.addEventListener('click', acts[button.dataset.do]);
+  slider.addEventListener('input', () => { pause(); go(slider.value - 1); });
+  $('.controls', section).hidden = false;
+  insist(img);
+  go(0);
+}
+
+// ---- Walk: the picture is a cylinder, its middle is heading 0. It is the ground of the view and repeats, so that one can turn around and around.
+function walk(section) {
+  const img = $('.around', section);
+  const view = $('.view', section);
+  const looksKey = 'looks ' + who() + section.dataset.slot;
+  const looksField = $('[name=looks]');
+  let heading = Number(section.dataset.facing);
+  let looks = Number(tab.get(looksKey));
+  const turnTo = (deg) => ((deg % 360) + 540) % 360 - 180;  // into -180..180
+
+  const ways = all('.ways [data-deg]', section).map((way) => {
+    const go = document.createElement('button');
+    const level = /\b(up|down)\b/.exec(way.dataset.words);
+    go.type = 'button';
+    go.tabIndex = -1;  // the same way is a button in the list below, for keys and screen readers
+    go.className = 'go';
+    go.textContent = `Go ${level ? level[0] + ' ' : ''}${way.dataset.metres} m`;
+    go.addEventListener('click', () => way.click());
+    return { deg: Number(way.dataset.deg), way, go };
+  });
+  const marks = document.createElement('div');
+  marks.setAttribute('aria-hidden', 'true');
+  marks.append(...ways.map((one) => one.go));
+  view.append(marks);
+
+  // The way that arrow up takes: the nearest to the middle, if it is about in front.
+  const ahead = () => ways.filter((one) => Math.abs(turnTo(one.deg - heading)) < 60)
+    .sort((a, b) => Math.abs(turnTo(a.deg - heading)) - Math.abs(turnTo(b.deg - heading)))[0];
+  const perDeg = () => view.clientHeight * (img.naturalWidth / img.naturalHeight || 4) / 360;  // pixels
+
+  function draw() {
+    const middle = view.clientWidth / 2;
+    const next = ahead();
+    const taken = [];
+    view.style.backgroundPositionX = `${middle - (heading + 180) * perDeg()}px`;
+    for (const one of ways) {
+      const x = middle + turnTo(one.deg - heading) * perDeg();
+      const half = one.go.offsetWidth / 2;
+      // Two ways in about one direction stand above each other.
+      const row = taken.filter((other) => Math.abs(other.x - x) < other.half + half + 4).length;
+      taken.push({ x, half });
+      one.go.style.transform = `translate(${x - half}px, ${view.clientHeight * 0.68 - row * 52}px)`;
+      one.go.classList.toggle('next', one === next);
+    }
+  }
+  function looked() {
+    looks += 1;
+    looksField.value = looks;
+    tab.set(looksKey, looks);
+  }
+  let turning = null;  // where the turn that is under way ends
+  function turn(by) {
+    looked();
+    const from = heading;
+    const to = (turning ?? heading) + by;
+    const began = performance.now();
+    const step = (now) => {
+      if (turning !== to || !view.isConnected) return;
+      const part = still.matches ? 1 : Math.min(1, Math.max(0, (now - began) / 180));
+      heading = from + (to - from) * part;
+      if (part === 1) turning = null; else requestAnimationFrame(step);
+      draw();
+    };
+    turning = to;
+    step(began);
+    const next = ways.find((one) => Math.abs(turnTo(one.deg - to)) < 20);
+    say(`Turned ${by < 0 ? 'left' : 'right'}.${next ? ` In front of you now: ${next.way.textContent}` : ''}`);
+  }
+
+  let held = null;
+  view.addEventListener('pointerdown', (event) => {
+    if (event.button || event.target.closest('.go')) return;
+    held = { x: event.clientX, heading };
+    turning = null;
+    view.setPointerCapture(event.pointerId);
+  });
+  view.addEventListener('pointermove', (event) => {
+    if (!held) return;
+    heading = held.heading - (event.clientX - held.x) / perDeg();
+    draw();
+  });
+  const drop = () => { if (held && Math.abs(heading - held.heading) > 2) looked(); held = null; };
+  for (const end of ['pointerup', 'pointercancel']) view.addEventListener(end, drop);
+  for (const button of all('[data-turn]', section)) button.addEventListener('click', () => turn(Number(button.dataset.turn)));
+  section.addEventListener('keydown', (event) => {
+    if (event.altKey || event.ctrlKey || event.metaKey || event.shiftKey) return;  // alt and left is "back"
+    const act = { ArrowLeft: () => turn(-30), ArrowRight: () => turn(30), ArrowUp: () => {
+      if (event.repeat) return;
+      if (ahead()) ahead().way.click(); else say('No way in front of you. Turn left or right.');
+    } }[event.key];
+    if (act) { event.preventDefault(); act(); }
+  });
+
+  looksField.value = looks;
+  for (const one of all('.view, .turns, #keys', section)) one.hidden = false;
+  img.classList.add('unseen');
+  const loaded = () => { view.style.backgroundImage = `url("${img.src}")`; draw(); };
+  img.addEventListener('load', loaded);
+  insist(img);
+  if (img.complete && img.naturalWidth) loaded();
+  draw();
+  new ResizeObserver(draw).observe(view);
+  // The text stays on top: what gets the focus must not come to lie under it. If it is long, it scrolls by keys too.
+  const task = $('.task');
+  new ResizeObserver(() => {
+    if (!task.isConnected) return;
+    const sticks = getComputedStyle(task).position === 'sticky';
+    document.documentElement.style.scrollPaddingTop = sticks ? `${task.offsetHeight + 8}px` : '';
+    if (task.scrollHeight > task.clientHeight + 1) task.tabIndex = 0; else task.removeAttribute('tabindex');
+  }).observe(task);
+}
+
+function start() {
+  document.documentElement.style.scrollPaddingTop = '';
+  all('.film').forEach(film);
+  all('.walk').forEach(walk);
+  redraft();
+}
+start();
+leftovers();
