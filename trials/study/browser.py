@@ -41,6 +41,8 @@ class Participant:
         self.pages = 0
         self.items = 0
         self.disturbed: set[str] = set()
+        # The driver cannot click where script is switched off, so the page's script is taken away: all of it is in one file.
+        recorder.script = self.script
         chrome = webdriver.ChromeOptions()
         for argument in ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars", "--lang=en"]:
             chrome.add_argument(argument)
@@ -52,8 +54,6 @@ class Participant:
         self.driver = webdriver.Chrome(options=chrome, service=webdriver.ChromeService(options.chromedriver) if options.chromedriver else None)
         if not self.how.get("touch"):
             self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
-        if not self.script:
-            self.cdp("Emulation.setScriptExecutionDisabled", value=True)
 
     # ---- small tools
 
@@ -339,8 +339,6 @@ class Participant:
         self.settle()
         first = self.driver.current_window_handle
         self.driver.switch_to.new_window("tab")
-        if not self.script:
-            self.cdp("Emulation.setScriptExecutionDisabled", value=True)
         self.driver.get(self.recorder.origin + "/")
         if self.place() != place:
             self.fault(f"a second tab shows {self.place()}, the first {place}")

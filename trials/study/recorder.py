@@ -18,6 +18,7 @@ class Recorder:
         self.found: list[str] = []
         self.count = 0
         self.posts: list[str] = []
+        self.script = True  # whether the page gets its script
         self.losing = ""  # "request" or "reply": what is lost of each post from now on; a browser tries again by itself at first
         recorder = self
 
@@ -64,6 +65,8 @@ class Recorder:
             return self.hang_up(request)
         finally:
             connection.close()
+        if request.path == "/script.js" and not self.script:
+            data = b""
         self.count += 1
         head = "\n".join(f"{name}: {value}" for name, value in reply.getheaders()).encode()
         for word in self.never:
