@@ -137,6 +137,7 @@ function insist(img) {
   img.addEventListener('error', () => {
     tries += 1;
     if (tries < 6) setTimeout(() => { img.src = img.src; }, 1000 * tries);
+    else net('A picture did not load. Please load the page again. Your place is kept.');
   });
   if (img.complete && !img.naturalWidth) img.src = img.src;
 }
@@ -278,7 +279,7 @@ function walk(section) {
 
   looksField.value = looks;
   for (const one of all('.view, .turns, #keys', section)) one.hidden = false;
-  img.classList.add('unseen');
+  $('.strip', section).hidden = $('.strip-note', section).hidden = true;
   const loaded = () => { view.style.backgroundImage = `url("${img.src}")`; draw(); };
   img.addEventListener('load', loaded);
   insist(img);
