@@ -1,6 +1,7 @@
 """A real browser takes part in a study of `wayword study serve`. See README.md beside this file."""
 
 import argparse
+import base64
 import re
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from urllib.parse import urlsplit
 
 from recorder import Recorder
 from selenium import webdriver
+from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -23,6 +25,7 @@ RUNS = {
     "phone": {"size": (390, 844), "touch": True},
     "keys": {"size": (1280, 800), "keys": True},
     "noscript": {"size": (390, 844), "touch": True, "script": False},
+    "withdraw": {"size": (390, 844), "touch": True, "leaves": True},
 }
 
 
@@ -95,7 +98,8 @@ class Participant:
         raise Fault(why)
 
     def fault(self, text: str):
-        page, _ = self.place()
+        main = self.find("main[data-page]")
+        page = main.get_attribute("data-page") if main else "no page"
         self.faults.append(f"{self.name}, {page}: {text}")
         print(f"  FAULT {self.name}, {page}: {text}", flush=True)
 
@@ -222,8 +226,6 @@ class Participant:
         self.cdp("Emulation.setEmulatedMedia", features=[])
 
     def shot(self, path: Path, whole: bool = False):
-        import base64
-
         data = self.cdp("Page.captureScreenshot", format="png", captureBeyondViewport=whole, **({"clip": self.page_clip()} if whole else {}))["data"]
         path.write_bytes(base64.b64decode(data))
 
@@ -368,7 +370,7 @@ class Participant:
             self.fault(f"after {what} it shows {self.place()}, before {place}")
 
     def answer(self):
-        """Sends an answer; once with its request lost, once with the reply lost, once twice, once from two tabs."""
+        """Sends an answer; once by a double click beside a second tab, once with its request lost, once with the reply lost."""
         done = self.done()
         if self.script and self.items == 2 and "request" not in self.disturbed:
             self.lossy("request")
@@ -518,7 +520,7 @@ class Participant:
     # ---- a way out
 
     def withdraws(self):
-        """Somebody who stops at once; or who does not consent, where no other link is left."""
+        """Somebody who stops at once."""
         self.driver.get(self.link)
         self.send(self.find("button[value=yes]"))
         self.press(self.find("a.leave"))
@@ -548,7 +550,7 @@ def links(options: argparse.Namespace) -> list[str]:
         if recruiter["kind"] == "parameters":
             tag = f"{time.time_ns():x}"
             study = f"&{recruiter['study']}={recruiter.get('only_study') or 'trial'}" if recruiter.get("study") else ""
-            given = [f"/join?{recruiter['person']}=p{tag}{n}&{recruiter['session']}=s{tag}{n}{study}" for n in range(len(RUNS) + 1)]
+            given = [f"/join?{recruiter['person']}=p{tag}{n}&{recruiter['session']}=s{tag}{n}{study}" for n in range(len(RUNS))]
     if not given:
         sys.exit("give --url or --links: this study has personal links, and no recruiter")
     return given
@@ -562,7 +564,7 @@ def main():
     parser.add_argument("--url", action="append", default=[], help="a personal link; one per run is used")
     parser.add_argument("--links", help="a file with personal links")
     parser.add_argument("--right", help="the right answers of the questions about the task, as 1,0; without it as study.toml says")
-    parser.add_argument("--runs", default=",".join(RUNS) + ",withdraw", help="which runs (default: %(default)s)")
+    parser.add_argument("--runs", default=",".join(RUNS), help="which runs (default: %(default)s)")
     parser.add_argument("--axe", type=Path, help="axe.min.js of the npm package axe-core; without it nothing is checked by axe")
     parser.add_argument("--never", action="append", default=[], help="a word that no reply may have, as a system's name; may be given again")
     parser.add_argument("--out", type=Path, required=True, help="folder for the screenshots")
@@ -603,11 +605,10 @@ def main():
             parts = urlsplit(link)
             link = recorder.origin + parts.path + (f"?{parts.query}" if parts.query else "")
             print(name, flush=True)
-            RUNS.setdefault("withdraw", {"size": (390, 844), "touch": True})
             participant = Participant(name, link, options, recorder)
             try:
-                participant.withdraws() if name == "withdraw" else participant.take_part()
-            except Fault as fault:
+                participant.withdraws() if participant.how.get("leaves") else participant.take_part()
+            except (Fault, WebDriverException) as fault:
                 participant.fault(str(fault))
                 participant.shot(options.out / f"{name}-fault.png", whole=True)
             finally:
