@@ -56,6 +56,7 @@ async function send(answer, leftover) {
 
 addEventListener('submit', async (event) => {
   const form = event.target;
+  if (!('submitter' in event)) return;  // an old browser: it cannot tell which button it was, so it sends the form itself
   const pressed = event.submitter;
   event.preventDefault();
   if (busy) return;  // a double click is one answer
@@ -105,7 +106,8 @@ function show(doc, reply) {
   document.title = doc.title;
   if (reply.ok) history.replaceState(null, '', reply.url);
   start();
-  if (walked && !$('#error')) {  // a step: the eyes stay where they are, the keys go on working
+  if (walked && !$('#error')) {  // a step: the page stays where it is if the view is in sight, and the keys go on working
+    $('.view').scrollIntoView({ block: 'nearest' });
     $('.view').focus({ preventScroll: true });
     const words = all('.ways [data-words]').map((way) => way.dataset.words);
     say(words.length ? `You moved. Ways: ${words.join(', ')}.` : 'You moved. No way leads on from here.');
@@ -137,6 +139,7 @@ function insist(img) {
   img.addEventListener('error', () => {
     tries += 1;
     if (tries < 6) setTimeout(() => { img.src = img.src; }, 1000 * tries);
+    else net('A picture did not load. Please load the page again. Your place is kept.');
   });
   if (img.complete && !img.naturalWidth) img.src = img.src;
 }
@@ -278,7 +281,7 @@ function walk(section) {
 
   looksField.value = looks;
   for (const one of all('.view, .turns, #keys', section)) one.hidden = false;
-  img.classList.add('unseen');
+  $('.strip', section).hidden = $('.strip-note', section).hidden = true;
   const loaded = () => { view.style.backgroundImage = `url("${img.src}")`; draw(); };
   img.addEventListener('load', loaded);
   insist(img);
@@ -291,7 +294,9 @@ function walk(section) {
     if (!task.isConnected) return;
     const sticks = getComputedStyle(task).position === 'sticky';
     document.documentElement.style.scrollPaddingTop = sticks ? `${task.offsetHeight + 8}px` : '';
-    if (task.scrollHeight > task.clientHeight + 1) task.tabIndex = 0; else task.removeAttribute('tabindex');
+    const rest = task.scrollHeight > task.clientHeight + 1;
+    task.classList.toggle('long', rest);
+    if (rest) task.tabIndex = 0; else task.removeAttribute('tabindex');
   }).observe(task);
 }
 
