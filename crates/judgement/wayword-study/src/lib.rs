@@ -4,12 +4,17 @@
 //! [`Data`] reads what they gave. Architecture invariant: an async runtime lives in the folder `site` alone, and what a page receives
 //! never names a goal, a path, a scene or a condition.
 
+mod office;
+mod site;
 mod store;
 mod study;
 mod token;
 mod wording;
 
+pub use site::{Listen, Security, Started, serve};
+pub use store::{Forgotten, Invited, Progress, Reconciled, Reconciliation, Row};
+
 pub use study::{
-    Answer, Choice, Condition, Data, Item, Kind, Mode, Move, Participant, Passed, Picture, Place, Plan, Route, Scene,
-    Settings, Slot, SlotState, Status, Study, StudyError, Told,
+    Answer, Choice, Codes, Condition, Data, Item, Kind, Mode, Move, Participant, Passed, Picture, Place, Plan,
+    Question, Recruiter, Route, Scene, Settings, Slot, SlotState, Status, Study, StudyError, Told,
 };

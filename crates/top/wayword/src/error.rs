@@ -83,6 +83,10 @@ pub enum Error {
     /// A path could not be observed.
     #[error(transparent)]
     Observe(#[from] ObserveError),
+    /// Of a study.
+    #[cfg(feature = "study")]
+    #[error(transparent)]
+    Study(#[from] wayword_study::StudyError),
     /// A house could not be saved.
     #[error(transparent)]
     House(#[from] wayword_house::SaveError),

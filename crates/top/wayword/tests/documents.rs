@@ -26,8 +26,11 @@ const NEEDS: [(&str, &str); 11] = [
 ];
 
 /// Subcommands that a test cannot run with any arguments, and what they need.
-const COMMANDS_NEED: [(&str, &str); 2] =
-    [("ledger", "a ledger, which calls of models make"), ("similarity", "the weights of a sentence encoder")];
+const COMMANDS_NEED: [(&str, &str); 3] = [
+    ("ledger", "a ledger, which calls of models make"),
+    ("similarity", "the weights of a sentence encoder"),
+    ("study", "runs, and people"),
+];
 
 /// The largest values that the test runs a command with, because a document's larger ones would take too long.
 const AT_MOST: [(&str, u32); 3] = [("--paths", 1), ("--views", 5), ("--smooth", 1)];

@@ -3,23 +3,27 @@
 mod answers;
 mod assign;
 mod counts;
-mod desk;
 mod people;
 mod read;
 mod recruits;
 mod stage;
 
-pub(crate) use answers::{Given, Refusal};
+pub(crate) use answers::{Given, LONGEST_TEXT, MOST_MOVES, Refusal};
 pub use counts::{Progress, Row};
-pub(crate) use desk::{Busy, Desk, now_ms};
 pub(crate) use people::{Arrival, Entry, Outcome, Withdrawal};
 pub use people::{Forgotten, Invited};
 pub use recruits::{Reconciled, Reconciliation};
-pub(crate) use stage::{Held, Stage};
+pub(crate) use stage::{Done, Held, Stage};
+
+#[cfg(test)]
+mod tests;
 
 use crate::study::{Study, StudyError};
 use rusqlite::{Connection, TransactionBehavior};
-use std::{path::Path, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
 
 const SCHEMA: &str = include_str!("schema.sql");
 /// Version of the schema.
@@ -72,6 +76,35 @@ impl Store {
         transaction.commit()?;
         Ok(done)
     }
+
+    /// Does several things as one transaction, with one wait for the disk. `work` says of each whether it is kept: one that failed takes
+    /// nothing of the others with it.
+    ///
+    /// # Errors
+    /// What SQLite says; then nothing at all is kept.
+    pub(crate) fn together<T>(
+        &mut self,
+        study: &Study,
+        all: impl Iterator<Item = T>,
+        mut work: impl FnMut(T, &Book<'_>) -> bool,
+    ) -> Result<(), StudyError> {
+        let mut transaction = self.db.transaction_with_behavior(TransactionBehavior::Immediate)?;
+        for one in all {
+            let savepoint = transaction.savepoint()?;
+            if work(one, &Book { db: &savepoint, study, now_ms: now_ms() }) {
+                savepoint.commit()?;
+            } else {
+                savepoint.finish()?;
+            }
+        }
+        Ok(transaction.commit()?)
+    }
+}
+
+/// Unix time, milliseconds.
+pub(crate) fn now_ms() -> i64 {
+    let passed = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(passed.as_millis()).unwrap_or(i64::MAX)
 }
 
 /// The database inside a transaction, at a time: all that can be read and written stands on it.
@@ -82,6 +115,11 @@ pub(crate) struct Book<'a> {
 }
 
 impl Book<'_> {
+    /// The study whose database it is.
+    pub(crate) fn study(&self) -> &Study {
+        self.study
+    }
+
     fn meta(&self, key: &str) -> Result<Option<String>, StudyError> {
         use rusqlite::OptionalExtension as _;
         Ok(self.db.query_row("SELECT value FROM meta WHERE key = ?1", [key], |row| row.get(0)).optional()?)
@@ -93,6 +131,21 @@ impl Book<'_> {
             [key, value],
         )?;
         Ok(())
+    }
+
+    /// The folders to which results were written.
+    pub(crate) fn exports(&self) -> Result<Vec<PathBuf>, StudyError> {
+        Ok(self.meta("exports")?.and_then(|folders| serde_json::from_str(&folders).ok()).unwrap_or_default())
+    }
+
+    /// Remembers one of them.
+    pub(crate) fn note_export(&self, folder: &Path) -> Result<(), StudyError> {
+        let mut folders = self.exports()?;
+        if !folders.iter().any(|known| known == folder) {
+            folders.push(folder.to_owned());
+        }
+        let folders: Vec<_> = folders.iter().map(|folder| folder.to_string_lossy()).collect();
+        self.set_meta("exports", &serde_json::json!(folders).to_string())
     }
 
     /// Whether the study takes no more answers.

@@ -147,6 +147,26 @@ impl Book<'_> {
         Ok(failed >= if self.study.settings.minutes >= LONG_MINUTES { 2 } else { 1 })
     }
 
+    /// Whether a participation has ended.
+    pub(crate) fn is_over(&self, person: i64) -> Result<bool, StudyError> {
+        Ok(self.outcome(person)?.is_some())
+    }
+
+    /// The panorama where a walker stands after so many steps: only where this walker was, in what this walker holds.
+    pub(crate) fn panorama(&self, person: i64, slot: &str, steps: usize) -> Result<Option<String>, StudyError> {
+        let Some(held) = self.named(person, slot)? else { return Ok(None) };
+        let Some((_, route, Some(scene))) = self.of(&held) else { return Ok(None) };
+        let here = if steps == 0 { route.viewpoints.first() } else { held.moves.get(steps - 1) };
+        Ok(here.and_then(|here| scene.places.get(here)).map(|place| place.panorama.clone()))
+    }
+
+    /// A picture of the film of what somebody holds.
+    pub(crate) fn film_picture(&self, person: i64, slot: &str, number: usize) -> Result<Option<String>, StudyError> {
+        let Some(held) = self.named(person, slot)? else { return Ok(None) };
+        let film = self.of(&held).map(|(_, route, _)| &route.film);
+        Ok(film.and_then(|film| film.get(number)).map(|picture| picture.file.clone()))
+    }
+
     /// The item, route and scene of what somebody holds.
     pub(crate) fn of(&self, held: &Held) -> Option<(&Item, &Route, Option<&Scene>)> {
         let item = self.study.items.get(held.item as usize)?;

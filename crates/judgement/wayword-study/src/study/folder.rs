@@ -1,7 +1,7 @@
 //! The folder of a study.
 
-use super::{Data, Item, Plan, Route, Scene, Settings, StudyError};
-use crate::store::{Store, now_ms};
+use super::{Item, Plan, Route, Scene, Settings, StudyError};
+use crate::store::Store;
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     fs,
@@ -95,14 +95,6 @@ impl Study {
     /// Its database.
     pub(crate) fn database(&self) -> PathBuf {
         self.folder.join(DATABASE)
-    }
-
-    /// The study with all that people gave.
-    ///
-    /// # Errors
-    /// When the database cannot be read.
-    pub fn data(self) -> Result<Data, StudyError> {
-        Store::open(&self.database())?.data(self, now_ms())
     }
 
     /// The scene of a route.

@@ -8,6 +8,7 @@ mod ledger;
 mod models;
 mod perceive;
 mod similarity;
+mod study;
 mod view;
 
 use crate::settings::{Asked, AskedPlatform};
@@ -23,6 +24,10 @@ pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
 pub use similarity::{By, Similarity};
+pub use study::{
+    Control, NamedSet, Study, StudyClose, StudyCommand, StudyForget, StudyInvite, StudyMode, StudyNew, StudyPlan,
+    StudyReconcile, StudyRecruiter, StudyResults, StudyServe, StudyStatus,
+};
 pub use view::{View, ViewCommand, ViewMap, ViewPanorama, ViewPath, Walk};
 
 /// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
@@ -90,6 +95,8 @@ pub enum Command {
     Compare(Box<Compare>),
     /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with confidence intervals.
     Evaluate(Evaluate),
+    /// Let people walk by texts, rate them or choose between them, on a site of your own.
+    Study(Study),
     /// Check keys, servers, models and data, and say how to fix what is wrong.
     Doctor(Box<Doctor>),
     /// Show the kept calls to models, and what they cost.

@@ -18,6 +18,8 @@ mod perceive;
 mod platforms;
 mod report;
 mod similarity;
+#[cfg(feature = "study")]
+mod study;
 mod view;
 
 use crate::{
@@ -46,6 +48,10 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Evaluate(args) => evaluate::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
         Command::Similarity(args) => similarity::run(&args, output),
+        #[cfg(feature = "study")]
+        Command::Study(args) => study::run(&args, output),
+        #[cfg(not(feature = "study"))]
+        Command::Study(_) => Err(Error::not_built("there are no studies: this build has no site for them")),
         Command::Doctor(args) => doctor::run(&args, output),
         Command::Ledger(args) => ledger::run(&args, output),
         #[cfg(feature = "local")]

@@ -3,10 +3,10 @@
 mod file_kind;
 mod film;
 mod map;
-mod panorama;
-mod path;
-mod picture;
-mod unfinished;
+pub(super) mod panorama;
+pub(super) mod path;
+pub(super) mod picture;
+pub(super) mod unfinished;
 mod walk;
 
 use crate::{
@@ -61,7 +61,7 @@ pub(super) fn run(args: &View, output: &Output) -> Result<Exit, Error> {
     Ok(Exit::Done)
 }
 
-fn open(asked: &AskedPlatform) -> Result<Box<dyn Platform>, Error> {
+pub(super) fn open(asked: &AskedPlatform) -> Result<Box<dyn Platform>, Error> {
     platforms::open_named(asked.name(), asked.data.as_deref(), asked.at.as_deref(), asked.island)
 }
 

@@ -24,7 +24,7 @@ pub(super) fn write(args: &ViewPanorama, output: &Output) -> Result<Written, Err
         frame.pose.heading = heading
             .map_err(|error| Error::usage(format!("--heading-deg: {error}"), "give degrees, as in --heading-deg 90"))?;
     }
-    let whole = around(args, &*platform, &scene, &frame, output)?;
+    let whole = around(&*platform, &scene, &frame, args.width, output)?;
     let bytes = if kind == FileKind::Png { picture::png(&whole)? } else { picture::jpeg(&whole)? };
     Unfinished::whole(&args.out, &bytes)?;
     let (width, height) = (whole.width_px(), whole.height_px());
@@ -55,12 +55,15 @@ fn stand(args: &ViewPanorama, platform: &dyn Platform, scene: &SceneId) -> Resul
     Ok(Frame { pose: Pose::level(position, Heading::NORTH), viewpoint: Some(viewpoint), level })
 }
 
-/// The four views as one picture.
-fn around(
-    args: &ViewPanorama,
+/// What is seen all around from a frame, with its heading in the middle; `width` pixels wide, or as wide as keeps the detail.
+///
+/// # Errors
+/// When more than one of the four views has no picture, or they do not show what was asked for.
+pub(in crate::commands) fn around(
     platform: &dyn Platform,
     scene: &SceneId,
     frame: &Frame,
+    width: Option<u32>,
     output: &Output,
 ) -> Result<Image, Error> {
     let mut images: [Option<Arc<Image>>; 4] = [const { None }; 4];
@@ -93,7 +96,7 @@ fn around(
     });
     let unfit =
         |error: String| Error::usage(format!("the views cannot become a panorama: {error}"), "try another --width");
-    let whole = panorama(quarters, args.width, GREY).map_err(|error| unfit(error.to_string()))?;
+    let whole = panorama(quarters, width, GREY).map_err(|error| unfit(error.to_string()))?;
     Image::new(whole.width, whole.height, whole.rgb).map_err(|error| unfit(error.to_string()))
 }
 

@@ -23,7 +23,7 @@ pub(super) fn png(picture: &Image) -> Result<Vec<u8>, Error> {
 ///
 /// # Errors
 /// When it cannot be encoded.
-pub(super) fn jpeg(picture: &Image) -> Result<Vec<u8>, Error> {
+pub(in crate::commands) fn jpeg(picture: &Image) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     encoded(picture, JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)).map(|()| bytes)
 }

@@ -8,7 +8,7 @@ use std::{
 };
 
 /// A file beside its place. If dropped before it is finished, it is removed, and the old file stays.
-pub(super) struct Unfinished {
+pub(in crate::commands) struct Unfinished {
     file: BufWriter<File>,
     beside: PathBuf,
     out: PathBuf,
@@ -32,7 +32,7 @@ impl Unfinished {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub(super) fn whole(out: &Path, bytes: &[u8]) -> Result<(), Error> {
+    pub(in crate::commands) fn whole(out: &Path, bytes: &[u8]) -> Result<(), Error> {
         let mut file = Self::new(out)?;
         file.write_all(bytes).map_err(Error::io(out, "write"))?;
         file.finish()

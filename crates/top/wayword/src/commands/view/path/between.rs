@@ -11,10 +11,10 @@ const WALKS_M: f64 = 1.0;
 
 /// Where a picture is taken.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Step {
-    pub(super) frame: Frame,
+pub(in crate::commands) struct Step {
+    pub(in crate::commands) frame: Frame,
     /// Whether it is not one of the path's own frames.
-    pub(super) is_between: bool,
+    pub(in crate::commands) is_between: bool,
 }
 
 /// The frames of a path with `between` places between each two of them. As in a move, the camera turns on the spot and
@@ -22,7 +22,7 @@ pub(super) struct Step {
 ///
 /// # Errors
 /// When places between frames are asked for, but the path has no poses.
-pub(super) fn steps(path: &Path, between: usize) -> Result<Vec<Step>, Error> {
+pub(in crate::commands) fn steps(path: &Path, between: usize) -> Result<Vec<Step>, Error> {
     if between > 0 && !path.motion.is_known() {
         let problem = format!("path {}: without poses there are no pictures between its frames", path.id);
         return Err(Error::usage(problem, "leave --smooth out to see the frames only"));

@@ -1,6 +1,6 @@
 //! `wayword view path`.
 
-mod between;
+pub(in crate::commands) mod between;
 
 use super::{Written, film, open, walk};
 use crate::{cli::ViewPath, count::count, error::Error, output::Output};

@@ -1,13 +1,13 @@
 //! One thread that writes for all requests. What waits at the same time is written as one transaction (a group commit), and nobody is
 //! told that something is kept before it is on disk.
 
-use super::{Book, Store};
-use crate::study::{Study, StudyError};
-use rusqlite::TransactionBehavior;
+use crate::{
+    store::{Book, Store},
+    study::{Study, StudyError},
+};
 use std::{
     sync::{Arc, mpsc},
     thread::{self, JoinHandle},
-    time::{SystemTime, UNIX_EPOCH},
 };
 use tokio::sync::oneshot;
 
@@ -72,35 +72,12 @@ impl Desk {
 
 fn work(store: &mut Store, study: &Study, batch: Vec<Job>) {
     let mut replies: Vec<(bool, Deliver)> = Vec::new();
-    let is_kept = together(store, study, batch, &mut replies).is_ok();
-    for (is_good, deliver) in replies {
-        deliver(is_kept && is_good);
-    }
-}
-
-/// Each piece of work has a savepoint: one that fails takes nothing of the others with it.
-fn together(
-    store: &mut Store,
-    study: &Study,
-    batch: Vec<Job>,
-    replies: &mut Vec<(bool, Deliver)>,
-) -> Result<(), rusqlite::Error> {
-    let mut transaction = store.db.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    for job in batch {
-        let savepoint = transaction.savepoint()?;
-        let (is_good, deliver) = job(&Book { db: &savepoint, study, now_ms: now_ms() });
+    let kept = store.together(study, batch.into_iter(), |job, book| {
+        let (is_good, deliver) = job(book);
         replies.push((is_good, deliver));
-        if is_good {
-            savepoint.commit()?;
-        } else {
-            savepoint.finish()?;
-        }
+        is_good
+    });
+    for (is_good, deliver) in replies {
+        deliver(kept.is_ok() && is_good);
     }
-    transaction.commit()
-}
-
-/// Unix time, milliseconds.
-pub(crate) fn now_ms() -> i64 {
-    let passed = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    i64::try_from(passed.as_millis()).unwrap_or(i64::MAX)
 }

@@ -1,0 +1,101 @@
+//! Two cookies: the session of somebody who takes part, and what somebody came with who has not consented yet.
+
+use crate::store::Arrival;
+use axum::http::{HeaderMap, HeaderValue, header};
+use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
+
+/// Longest cookie that is read.
+const LONGEST: usize = 1024;
+
+/// The names of the cookies, and whether they go over TLS alone.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cookies {
+    /// Whether browsers reach the site over TLS.
+    pub(super) is_secure: bool,
+}
+
+impl Cookies {
+    fn name(self, what: &'static str) -> String {
+        // A browser takes a `__Host-` cookie only from the host itself, over TLS.
+        if self.is_secure { format!("__Host-{what}") } else { what.to_owned() }
+    }
+
+    /// The session's token.
+    pub(super) fn session(self, headers: &HeaderMap) -> Option<String> {
+        value(headers, &self.name("session"))
+    }
+
+    /// What somebody came with.
+    pub(super) fn arrival(self, headers: &HeaderMap) -> Option<Arrival> {
+        let bytes = URL_SAFE_NO_PAD.decode(value(headers, &self.name("arrival"))?).ok()?;
+        serde_json::from_slice(&bytes).ok()
+    }
+
+    /// Sets the session's token. It outlives the browser, so that a participant can go on tomorrow.
+    pub(super) fn set_session(self, token: &str) -> Option<HeaderValue> {
+        self.set("session", token, "; Max-Age=604800")
+    }
+
+    /// Keeps what somebody came with, until the browser is closed.
+    pub(super) fn set_arrival(self, arrival: &Arrival) -> Option<HeaderValue> {
+        let json = serde_json::to_vec(arrival).ok()?;
+        self.set("arrival", &URL_SAFE_NO_PAD.encode(json), "")
+    }
+
+    /// Removes a cookie.
+    pub(super) fn drop_arrival(self) -> Option<HeaderValue> {
+        self.set("arrival", "", "; Max-Age=0")
+    }
+
+    /// Removes the session.
+    pub(super) fn drop_session(self) -> Option<HeaderValue> {
+        self.set("session", "", "; Max-Age=0")
+    }
+
+    fn set(self, what: &'static str, value: &str, age: &str) -> Option<HeaderValue> {
+        let secure = if self.is_secure { "; Secure" } else { "" };
+        // Lax, not Strict: a recruiter's link comes from another site, and must find the session.
+        let text = format!("{}={value}; Path=/; HttpOnly; SameSite=Lax{secure}{age}", self.name(what));
+        HeaderValue::from_str(&text).ok()
+    }
+}
+
+fn value(headers: &HeaderMap, name: &str) -> Option<String> {
+    let all = headers.get_all(header::COOKIE).iter().filter_map(|line| line.to_str().ok());
+    let pairs = all.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
+    let mut found = pairs.filter(|(key, _)| *key == name).map(|(_, value)| value);
+    found.next().filter(|value| !value.is_empty() && value.len() <= LONGEST).map(str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sent(text: &str) -> HeaderMap {
+        HeaderMap::from_iter([(header::COOKIE, HeaderValue::from_str(text).unwrap())])
+    }
+
+    #[test]
+    fn what_was_set_is_read() {
+        let cookies = Cookies { is_secure: true };
+        let arrival = Arrival::Recruit { person: "p".into(), study: "s".into(), session: "x".into() };
+        let set = cookies.set_arrival(&arrival).unwrap();
+        let set = set.to_str().unwrap();
+        assert!(
+            set.starts_with("__Host-arrival=") && set.ends_with("; Path=/; HttpOnly; SameSite=Lax; Secure"),
+            "{set}"
+        );
+        let pair = set.split(';').next().unwrap();
+        assert_eq!(cookies.arrival(&sent(&format!("a=b; {pair}"))), Some(arrival));
+        assert_eq!(Cookies { is_secure: false }.arrival(&sent(pair)), None);
+    }
+
+    #[test]
+    fn what_is_no_cookie_of_ours_is_nothing() {
+        let cookies = Cookies { is_secure: false };
+        for text in ["", "session=", "session", "x=y; =; ;;", "arrival=%%%"] {
+            assert_eq!((cookies.session(&sent(text)), cookies.arrival(&sent(text))), (None, None), "{text}");
+        }
+        assert_eq!(cookies.session(&sent(&format!("session={}", "a".repeat(LONGEST + 1)))), None);
+    }
+}

@@ -1,0 +1,149 @@
+//! What every request passes: headers of the answer, where a form may come from, and how fast one may ask.
+
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, header};
+use std::{
+    collections::HashMap,
+    sync::{Mutex, PoisonError},
+    time::Instant,
+};
+
+/// Requests of a participant: so many at once, and so many for each second after that. A walker's pictures count too.
+const OF_PERSON: Rate = Rate { at_once: 120.0, each_second: 20.0 };
+/// Requests of everybody who has no session.
+const OF_STRANGERS: Rate = Rate { at_once: 600.0, each_second: 100.0 };
+/// Most participants whose rate is remembered.
+const REMEMBERED: usize = 20_000;
+
+/// No page loads anything from elsewhere, runs a script of its own text, or can be put into another page.
+const POLICY: &str = "default-src 'none'; img-src 'self'; style-src 'self'; script-src 'self'; connect-src 'self'; form-action 'self'; \
+                      base-uri 'none'; frame-ancestors 'none'";
+
+/// The headers of every answer.
+pub(super) fn headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)> {
+    let mut all = vec![
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
+        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+        // The address by which a participant came names the participant.
+        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+        (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
+        (HeaderName::from_static("cross-origin-opener-policy"), HeaderValue::from_static("same-origin")),
+        (HeaderName::from_static("cross-origin-resource-policy"), HeaderValue::from_static("same-origin")),
+        (
+            HeaderName::from_static("permissions-policy"),
+            HeaderValue::from_static("camera=(), microphone=(), geolocation=(), browsing-topics=()"),
+        ),
+    ];
+    if is_secure {
+        all.push((header::STRICT_TRANSPORT_SECURITY, HeaderValue::from_static("max-age=31536000")));
+    }
+    all
+}
+
+/// Whether a form may have come from a page of this site. Only a browser sends these headers, and it sends them truly.
+pub(super) fn is_own(headers: &HeaderMap, public: Option<&str>, scheme: &str) -> bool {
+    let text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
+    match (text(header::ORIGIN), text(header::HOST)) {
+        (Some(origin), host) => {
+            public.is_some_and(|public| origin == public)
+                || host.is_some_and(|host| origin == format!("{scheme}://{host}"))
+        }
+        (None, _) => text(HeaderName::from_static("sec-fetch-site")) == Some("same-origin"),
+    }
+}
+
+/// Whether a method changes something.
+pub(super) fn changes(method: &Method) -> bool {
+    !matches!(*method, Method::GET | Method::HEAD)
+}
+
+/// How fast one may ask.
+#[derive(Debug, Clone, Copy)]
+struct Rate {
+    at_once: f64,
+    each_second: f64,
+}
+
+/// Who asks how fast. It goes by participant, never by address: a laboratory or a university has one address.
+#[derive(Debug)]
+pub(super) struct Pace {
+    began: Instant,
+    buckets: Mutex<HashMap<Option<i64>, Bucket>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Bucket {
+    left: f64,
+    at_s: f64,
+}
+
+impl Pace {
+    pub(super) fn new() -> Self {
+        Self { began: Instant::now(), buckets: Mutex::default() }
+    }
+
+    /// Whether a participant, or a stranger, may ask now.
+    pub(super) fn allows(&self, person: Option<i64>) -> bool {
+        self.allows_at(person, self.began.elapsed().as_secs_f64())
+    }
+
+    fn allows_at(&self, person: Option<i64>, now_s: f64) -> bool {
+        let rate = if person.is_some() { OF_PERSON } else { OF_STRANGERS };
+        let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
+        if buckets.len() >= REMEMBERED {
+            // Whoever has been quiet long enough to be full again need not be remembered.
+            let full_after_s = OF_PERSON.at_once / OF_PERSON.each_second;
+            buckets.retain(|_, bucket| now_s - bucket.at_s < full_after_s);
+        }
+        let bucket = buckets.entry(person).or_insert(Bucket { left: rate.at_once, at_s: now_s });
+        bucket.left = (bucket.left + (now_s - bucket.at_s) * rate.each_second).min(rate.at_once);
+        bucket.at_s = now_s;
+        let is_allowed = bucket.left >= 1.0;
+        if is_allowed {
+            bucket.left -= 1.0;
+        }
+        is_allowed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn from(pairs: &[(&'static str, &str)]) -> HeaderMap {
+        pairs
+            .iter()
+            .map(|(name, value)| (HeaderName::from_static(name), HeaderValue::from_str(value).unwrap()))
+            .collect()
+    }
+
+    #[test]
+    fn a_form_of_another_site_is_refused() {
+        let own = |pairs: &[(&'static str, &str)]| is_own(&from(pairs), Some("https://study.example.org"), "http");
+        assert!(own(&[("origin", "http://127.0.0.1:8080"), ("host", "127.0.0.1:8080")]));
+        assert!(own(&[("origin", "https://study.example.org"), ("host", "127.0.0.1:8080")]));
+        assert!(own(&[("sec-fetch-site", "same-origin")]));
+        assert!(!own(&[("origin", "https://evil.example"), ("host", "127.0.0.1:8080")]));
+        assert!(!own(&[("origin", "null"), ("sec-fetch-site", "same-origin"), ("host", "127.0.0.1:8080")]));
+        assert!(!own(&[("host", "127.0.0.1:8080")]));
+        assert!(!own(&[("sec-fetch-site", "cross-site")]));
+    }
+
+    #[test]
+    fn who_asks_too_fast_waits_and_nobody_else_does() {
+        let pace = Pace::new();
+        let asked = (0..200).filter(|_| pace.allows_at(Some(1), 0.0)).count();
+        assert_eq!(asked, 120);
+        assert!(pace.allows_at(Some(2), 0.0) && pace.allows_at(None, 0.0));
+        assert_eq!((0..200).filter(|_| pace.allows_at(Some(1), 1.0)).count(), 20);
+    }
+
+    #[test]
+    fn memory_of_the_pace_is_bounded() {
+        let pace = Pace::new();
+        for person in 0..100_000 {
+            pace.allows_at(Some(person), f64::from(u32::try_from(person).unwrap()));
+        }
+        assert!(pace.buckets.lock().unwrap().len() <= REMEMBERED);
+    }
+}

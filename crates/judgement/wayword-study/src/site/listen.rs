@@ -1,0 +1,227 @@
+//! Where the site listens, and how it ends.
+
+use super::{
+    cookies::Cookies,
+    desk::Desk,
+    gate::Pace,
+    pages::Pages,
+    routes::{Site, router},
+    tls,
+};
+use crate::study::{Study, StudyError};
+use axum::{Router, extract::Request};
+use hyper::{body::Incoming, server::conn::http1, service::service_fn};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use std::{
+    net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket},
+    path::PathBuf,
+    sync::Arc,
+    time::Duration,
+};
+use tokio::{
+    io::{AsyncRead, AsyncWrite},
+    net::{TcpListener, TcpStream},
+    sync::{Semaphore, watch},
+    time,
+};
+use tokio_rustls::TlsAcceptor;
+use tower_service::Service as _;
+
+/// Most connections at once. More wait for one to end.
+const CONNECTIONS: usize = 1024;
+/// How long a handshake or the head of a request may take.
+const HEAD: Duration = Duration::from_secs(10);
+/// How long a connection lasts. Browsers open a new one.
+const CONNECTION: Duration = Duration::from_secs(300);
+/// How long requests may go on when the site ends.
+const GRACE: Duration = Duration::from_secs(5);
+/// How often the caller is asked whether to stop.
+const POLL: Duration = Duration::from_millis(100);
+/// Largest head of a request, bytes.
+const MOST_HEAD: usize = 16 * 1024;
+
+/// How the site is reached.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Listen {
+    /// Where it listens. Port 0 takes any that is free.
+    pub address: SocketAddr,
+    /// Whether it speaks TLS.
+    pub security: Security,
+    /// The address that participants use, as `https://study.example.org`, where another server stands before this one.
+    pub public: Option<String>,
+}
+
+/// Whether the site speaks TLS.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Security {
+    /// It does not, and listens on this machine alone.
+    Loopback,
+    /// It does not, and others in the network can read along. The user asked for it.
+    InsecureLan,
+    /// By a certificate and a key.
+    Tls {
+        /// The certificate chain, PEM.
+        certificate: PathBuf,
+        /// Its private key, PEM.
+        key: PathBuf,
+    },
+    /// By a certificate that the study makes for itself; browsers warn of it.
+    SelfSigned,
+}
+
+/// A site that listens.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Started {
+    /// Where it listens.
+    pub address: SocketAddr,
+    /// What participants open, without a slash at the end.
+    pub url: String,
+}
+
+/// Shows a study to people until `should_stop` says so; `started` is called once it listens. Requests that are under way are ended first.
+///
+/// # Errors
+/// When the settings forbid it, the address cannot be had, or a file cannot be used.
+pub fn serve(
+    study: Study,
+    listen: &Listen,
+    started: impl FnOnce(&Started),
+    should_stop: impl Fn() -> bool,
+) -> Result<(), StudyError> {
+    check(&study, listen)?;
+    let host = host(listen.address.ip());
+    let acceptor = match &listen.security {
+        Security::Loopback | Security::InsecureLan => None,
+        Security::Tls { certificate, key } => Some(tls::of_files(certificate, key)?),
+        Security::SelfSigned => Some(tls::self_signed(&study.folder, host)?),
+    };
+    let scheme = if acceptor.is_some() { "https" } else { "http" };
+    let public = listen.public.as_ref().map(|url| url.trim_end_matches('/').to_owned());
+    let is_secure = public.as_ref().map_or(acceptor.is_some(), |url| url.starts_with("https://"));
+    let study = Arc::new(study);
+    let (desk, thread) = Desk::open(Arc::clone(&study))?;
+    let site = Site {
+        study,
+        desk,
+        pages: Pages::new()?,
+        cookies: Cookies { is_secure },
+        pace: Pace::new(),
+        public: public.clone(),
+        scheme,
+    };
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()
+        .map_err(StudyError::io("the async runtime", "start"))?;
+    let served = runtime.block_on(async {
+        let listener =
+            TcpListener::bind(listen.address).await.map_err(StudyError::io(listen.address.to_string(), "listen on"))?;
+        let address = listener.local_addr().map_err(StudyError::io(listen.address.to_string(), "listen on"))?;
+        let url = public.unwrap_or_else(|| format!("{scheme}://{}", SocketAddr::new(host, address.port())));
+        started(&Started { address, url });
+        accept(listener, acceptor, router(Arc::new(site)), should_stop).await;
+        Ok(())
+    });
+    runtime.shutdown_timeout(GRACE);
+    // The desk's thread ends when the last request has gone.
+    let _ = thread.join();
+    served
+}
+
+fn check(study: &Study, listen: &Listen) -> Result<(), StudyError> {
+    let is_loopback = listen.address.ip().is_loopback();
+    if !is_loopback && listen.security == Security::Loopback {
+        let problem = format!("{}: others could read along, and the cookies with it", listen.address);
+        let hint =
+            "listen on 127.0.0.1 behind a server with TLS, or give --tls CERT KEY, --self-signed, or --insecure-lan";
+        return Err(StudyError::refused(problem, hint));
+    }
+    if (!is_loopback || listen.public.is_some()) && study.settings.contact.trim().is_empty() {
+        let problem = "study.toml: `contact` is empty, so participants could ask nobody";
+        return Err(StudyError::refused(problem, "give a name, an institution and an address"));
+    }
+    Ok(())
+}
+
+/// The address that a participant's browser can open: of `0.0.0.0`, this machine's own in its network.
+fn host(listen: IpAddr) -> IpAddr {
+    if !listen.is_unspecified() {
+        return listen;
+    }
+    // Connecting a datagram socket sends nothing; it asks the system which of its addresses it would use. The address is one that
+    // is reserved for documents (RFC 5737).
+    let own = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
+        .and_then(|socket| socket.connect(("192.0.2.1", 9)).and_then(|()| socket.local_addr()));
+    own.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |own| own.ip())
+}
+
+async fn accept(listener: TcpListener, acceptor: Option<TlsAcceptor>, router: Router, should_stop: impl Fn() -> bool) {
+    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    let (end, ending) = watch::channel(());
+    let mut poll = time::interval(POLL);
+    loop {
+        let stream = tokio::select! {
+            _ = poll.tick() => {
+                if should_stop() {
+                    break;
+                }
+                continue;
+            }
+            accepted = listener.accept() => match accepted {
+                Ok((stream, _)) => stream,
+                // Too many open files, or a connection that went away: the next may do better.
+                Err(_) => {
+                    time::sleep(POLL).await;
+                    continue;
+                }
+            },
+        };
+        let Ok(place) = Arc::clone(&places).try_acquire_owned() else {
+            // No place: the connection is dropped, so that none waits without limit.
+            continue;
+        };
+        let (acceptor, router, ending) = (acceptor.clone(), router.clone(), ending.clone());
+        tokio::spawn(async move {
+            converse(stream, acceptor, router, ending).await;
+            drop(place);
+        });
+    }
+    drop(ending);
+    let _ = end.send(());
+    let _ = time::timeout(GRACE, end.closed()).await;
+}
+
+async fn converse(stream: TcpStream, acceptor: Option<TlsAcceptor>, router: Router, ending: watch::Receiver<()>) {
+    // Answers are small and complete: waiting for more to send with them costs time.
+    let _ = stream.set_nodelay(true);
+    match acceptor {
+        None => speak(stream, router, ending).await,
+        Some(acceptor) => {
+            if let Ok(Ok(stream)) = time::timeout(HEAD, acceptor.accept(stream)).await {
+                speak(stream, router, ending).await;
+            }
+        }
+    }
+}
+
+/// HTTP on one connection. What goes wrong on it is the client's, and is told to nobody.
+async fn speak(
+    stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
+    router: Router,
+    mut ending: watch::Receiver<()>,
+) {
+    let service = service_fn(move |request: Request<Incoming>| router.clone().call(request));
+    let connection = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(HEAD)
+        .max_buf_size(MOST_HEAD)
+        .serve_connection(TokioIo::new(stream), service);
+    tokio::pin!(connection);
+    tokio::select! {
+        _ = connection.as_mut() => return,
+        _ = ending.changed() => {}
+        () = time::sleep(CONNECTION) => {}
+    }
+    connection.as_mut().graceful_shutdown();
+    let _ = time::timeout(GRACE, connection).await;
+}

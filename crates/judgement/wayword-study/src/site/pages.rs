@@ -1,0 +1,309 @@
+//! The pages: templates, and what they are given. Nothing here says whose text it is or where the path leads.
+
+use super::{forms::Fields, ways::ways};
+use crate::{
+    store::{Book, Done, Entry, Held, MOST_MOVES, Outcome, Stage},
+    study::{Mode, Route, Scene, Status, Study, StudyError},
+    token::hash,
+    wording::{AGREEMENT_LEVELS, QUESTIONS, STATEMENTS},
+};
+use minijinja::{Environment, Value, context};
+use wayword_core::{Heading, ViewpointId};
+
+const TEMPLATES: [(&str, &str); 13] = [
+    ("base.html", include_str!("pages/base.html")),
+    ("parts.html", include_str!("pages/parts.html")),
+    ("consent.html", include_str!("pages/consent.html")),
+    ("understood.html", include_str!("pages/understood.html")),
+    ("watch.html", include_str!("pages/watch.html")),
+    ("rate.html", include_str!("pages/rate.html")),
+    ("pair.html", include_str!("pages/pair.html")),
+    ("follow.html", include_str!("pages/follow.html")),
+    ("follow_after.html", include_str!("pages/follow_after.html")),
+    ("attention.html", include_str!("pages/attention.html")),
+    ("done.html", include_str!("pages/done.html")),
+    ("message.html", include_str!("pages/message.html")),
+    ("withdraw.html", include_str!("pages/withdraw.html")),
+];
+
+/// All pages of a study.
+pub(super) struct Pages {
+    templates: Environment<'static>,
+}
+
+/// A page with its values.
+#[derive(Debug)]
+pub(super) struct Page {
+    name: &'static str,
+    values: Value,
+}
+
+/// What all pages of a participant share.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Around {
+    /// A mark of the session, which is no secret.
+    pub(super) who: Option<String>,
+    /// What is missing.
+    pub(super) error: Option<&'static str>,
+    /// What was filled in when something was missing.
+    pub(super) given: Option<Fields>,
+}
+
+/// A mark of a session for its pages.
+pub(super) fn mark(session: &str) -> String {
+    hash(&["mark", session])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The version of what is consented to: it changes with the words.
+pub(super) fn consent_version(study: &Study) -> String {
+    let settings = &study.settings;
+    let mut words: Vec<&str> = settings.about.iter().map(String::as_str).collect();
+    words.extend([settings.agreement.as_str(), &settings.contact, &settings.retention]);
+    hash(&words)[..6].iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl Pages {
+    /// Reads the templates.
+    ///
+    /// # Errors
+    /// When one is not well-formed, which a test rules out.
+    pub(super) fn new() -> Result<Self, StudyError> {
+        let mut templates = Environment::new();
+        for (name, source) in TEMPLATES {
+            templates.add_template(name, source).map_err(|error| unfit(&error))?;
+        }
+        Ok(Self { templates })
+    }
+
+    /// The HTML of a page.
+    ///
+    /// # Errors
+    /// When a value is missing, which tests rule out.
+    pub(super) fn html(&self, page: &Page) -> Result<String, StudyError> {
+        let template = self.templates.get_template(&format!("{}.html", page.name)).map_err(|error| unfit(&error))?;
+        template.render(&page.values).map_err(|error| unfit(&error))
+    }
+}
+
+fn unfit(error: &minijinja::Error) -> StudyError {
+    StudyError::refused(format!("a page cannot be made: {error:#}"), "this is a fault of the program; please report it")
+}
+
+impl Page {
+    fn new(study: &Study, name: &'static str, around: &Around, can_withdraw: bool, own: Value) -> Self {
+        let settings = &study.settings;
+        let shared = context! {
+            page => name,
+            study => context! {
+                title => settings.title, contact => settings.contact, retention => settings.retention, minutes => settings.minutes,
+            },
+            who => around.who,
+            error => around.error,
+            given => around.given,
+            can_withdraw,
+        };
+        Self { name, values: context! { ..own, ..shared } }
+    }
+
+    /// The page on which people consent.
+    pub(super) fn consent(study: &Study, around: &Around) -> Self {
+        let own = context! {
+            paragraphs => study.settings.about, agreement => study.settings.agreement, version => consent_version(study),
+        };
+        Self::new(study, "consent", around, false, own)
+    }
+
+    /// A message and nothing to do.
+    pub(super) fn message(study: &Study, heading: &str, text: &str, retry: bool) -> Self {
+        Self::new(study, "message", &Around::default(), false, context! { heading, text, retry })
+    }
+
+    /// The page before somebody stops.
+    pub(super) fn withdraw(study: &Study, around: &Around) -> Self {
+        Self::new(study, "withdraw", around, false, Value::UNDEFINED)
+    }
+
+    /// The end for somebody who did not consent, or whose answers were deleted.
+    pub(super) fn gone(study: &Study, has_consented: bool) -> Self {
+        let outcome = if has_consented { "withdrawn" } else { "no_consent" };
+        let code = if has_consented { "" } else { study.settings.codes.no_consent.as_str() };
+        Self::end(study, &Around::default(), outcome, code, 0, false)
+    }
+
+    fn end(study: &Study, around: &Around, outcome: &str, code: &str, answers: u32, kept: bool) -> Self {
+        let code = Some(code).filter(|code| !code.is_empty());
+        let url = Some(&study.settings.codes.return_url).filter(|url| !url.is_empty());
+        let encoded =
+            |code| percent_encoding::utf8_percent_encode(code, percent_encoding::NON_ALPHANUMERIC).to_string();
+        let return_url = code.zip(url).map(|(code, url)| url.replace("{code}", &encoded(code)));
+        Self::new(study, "done", around, false, context! { outcome, code, return_url, answers, kept })
+    }
+
+    fn over(study: &Study, around: &Around, outcome: Outcome) -> Self {
+        let codes = &study.settings.codes;
+        let (name, code) = match outcome.status {
+            Status::ScreenedOut => ("screened_out", &codes.screened_out),
+            Status::AttentionFailed => ("attention_failed", &codes.attention_failed),
+            Status::Withdrawn => return Self::end(study, around, "withdrawn", "", outcome.answers, true),
+            Status::Started | Status::Complete => ("done", &codes.done),
+        };
+        Self::end(study, around, name, code, outcome.answers, true)
+    }
+
+    /// The page of where a participant is.
+    pub(super) fn of_stage(book: &Book<'_>, person: i64, around: &Around) -> Result<Self, StudyError> {
+        let study = book.study();
+        let stage = book.stage(person)?;
+        let done = book.done(person)?;
+        let under = |name, own| Self::new(study, name, around, true, own);
+        Ok(match stage {
+            Stage::Over(outcome) => Self::over(study, around, outcome),
+            Stage::Understood { attempt } => under(
+                "understood",
+                context! {
+                    try => attempt, wrong => attempt > 0, intro => steps(study),
+                    questions => study.settings.questions.iter()
+                        .map(|question| context! { text => question.text, answers => question.answers }).collect::<Vec<_>>(),
+                },
+            ),
+            Stage::Attention { number, level } => {
+                let asked = AGREEMENT_LEVELS[usize::from(level.clamp(1, 5)) - 1];
+                let text = format!("This is an attention check. Please choose \u{201c}{asked}\u{201d}.");
+                under("attention", context! { number, text, levels => AGREEMENT_LEVELS, ..progress(done) })
+            }
+            Stage::Item(held) => match Self::of_item(book, &held, around, done) {
+                Some(page) => page,
+                None => Self::message(
+                    study,
+                    "This item cannot be shown",
+                    "Please tell the people who do this study.",
+                    false,
+                ),
+            },
+        })
+    }
+
+    fn of_item(book: &Book<'_>, held: &Held, around: &Around, done: Done) -> Option<Self> {
+        let study = book.study();
+        let (item, route, scene) = book.of(held)?;
+        let film = || {
+            let alt: Vec<&str> = route.film.iter().map(|picture| picture.alt.as_str()).collect();
+            context! { frames => alt.len(), alt }
+        };
+        let text = item.texts.first().map(|told| &told.text);
+        let (name, own) = match study.plan.mode {
+            Mode::Rate if study.settings.write_first && held.own_text.is_none() => {
+                ("watch", context! { film => film(), examples => study.settings.examples })
+            }
+            Mode::Rate => (
+                "rate",
+                context! {
+                    film => film(), examples => study.settings.examples, own_text => held.own_text, text, questions => QUESTIONS,
+                },
+            ),
+            Mode::Pair => {
+                let other = item.texts.get(1).map(|told| &told.text);
+                let (a, b) = if held.is_turned { (other, text) } else { (text, other) };
+                ("pair", context! { film => film(), a, b })
+            }
+            Mode::Follow if held.stopped_ms.is_some() => ("follow_after", context! { text, statements => STATEMENTS }),
+            Mode::Follow => ("follow", context! { text, ..standing(held, route, scene?)? }),
+        };
+        let own = context! { slot => held.slot, is_practice => held.is_practice, ..own };
+        let shown = if held.is_practice {
+            own
+        } else {
+            context! { ..own, ..progress(done) }
+        };
+        Some(Self::new(study, name, around, true, shown))
+    }
+}
+
+/// Where a walker stands and looks, and where the ways go.
+fn standing(held: &Held, route: &Route, scene: &Scene) -> Option<Value> {
+    let (here, facing) = stand(held, route, scene)?;
+    let place = scene.places.get(here)?;
+    let seq = held.moves.len();
+    Some(context! {
+        seq,
+        panorama => format!("/look/{}/{seq}.jpg", held.slot),
+        facing_deg => (facing.deg() * 10.0).round() / 10.0,
+        ways => if seq < MOST_MOVES { ways(scene, place, facing) } else { Vec::new() },
+        moves_left => MOST_MOVES - seq.min(MOST_MOVES),
+    })
+}
+
+/// The place, and the direction of the last step: at the start, where the path's walker looks.
+fn stand<'a>(held: &'a Held, route: &'a Route, scene: &Scene) -> Option<(&'a ViewpointId, Heading)> {
+    let start = route.viewpoints.first()?;
+    let Some(here) = held.moves.last() else { return Some((start, route.start_heading)) };
+    let before = held.moves.len().checked_sub(2).and_then(|at| held.moves.get(at)).unwrap_or(start);
+    let (from, to) = (scene.places.get(before)?, scene.places.get(here)?);
+    Some((here, Heading::towards(from.at(), to.at()).unwrap_or(route.start_heading)))
+}
+
+fn progress(done: Done) -> Value {
+    let is_half = done.expected >= 4 && done.answered == done.expected / 2;
+    context! { where => context! { done => done.answered, of => done.expected }, break_offered => is_half }
+}
+
+/// How it works, in short steps.
+fn steps(study: &Study) -> Vec<&'static str> {
+    let practice = "The first one is for practice. It does not count.";
+    match study.plan.mode {
+        Mode::Follow => vec![
+            "You read a text. It tells the way through a building.",
+            "You see pictures of the building. Look around, and go from place to place.",
+            "Go where the text says. Stop where the text ends.",
+            "Then you say how it was.",
+            practice,
+        ],
+        Mode::Rate if study.settings.write_first => vec![
+            "You watch a walk through a building.",
+            "You write a text that would lead somebody along the walk.",
+            "Then you read another text about the same walk, and answer four questions about it.",
+            practice,
+        ],
+        Mode::Rate => vec![
+            "You watch a walk through a building.",
+            "You read a text about the walk.",
+            "You answer four questions about the text.",
+            practice,
+        ],
+        Mode::Pair => vec![
+            "You watch a walk through a building.",
+            "You read two texts about it, A and B.",
+            "You say which one describes the walk better.",
+            practice,
+        ],
+    }
+}
+
+/// What an arrival that leads nowhere is told.
+pub(super) fn refused(study: &Study, entry: &Entry) -> Page {
+    let (heading, text, retry) = match entry {
+        Entry::Twice => (
+            "You have taken part already",
+            "Please open the link with which you started. If that does not help, ask us.",
+            false,
+        ),
+        Entry::Full => {
+            ("All places are taken at the moment", "A place may become free. Please try again in some minutes.", true)
+        }
+        Entry::Closed => ("This study is over", "It takes no more answers. Thank you for your interest.", false),
+        Entry::Unknown | Entry::New | Entry::Back(_) => {
+            ("This link leads to no study", "Please open the link that you were given, as a whole.", false)
+        }
+    };
+    Page::message(study, heading, text, retry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_templates_are_well_formed() {
+        Pages::new().unwrap();
+    }
+}

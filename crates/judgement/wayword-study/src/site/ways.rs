@@ -1,0 +1,87 @@
+//! The ways on from a place, in words.
+
+use crate::study::{Place, Scene};
+use serde::Serialize;
+use wayword_core::Heading;
+
+/// Steeper than this is stairs, radians: a ramp is flatter.
+const STAIRS_RAD: f64 = 0.35;
+
+/// A way on.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Way {
+    /// Its index among the neighbours: nothing that tells one place from another.
+    pub(super) id: String,
+    /// Its heading, degrees.
+    pub(super) deg: f64,
+    /// In words, from where one looks.
+    pub(super) words: String,
+    /// How far, metres.
+    pub(super) metres: f64,
+}
+
+/// The ways on from a place for somebody who looks along `facing`, from the left to the right.
+pub(super) fn ways(scene: &Scene, place: &Place, facing: Heading) -> Vec<Way> {
+    let way = |(index, neighbour): (usize, &wayword_core::ViewpointId)| {
+        let there = scene.places.get(neighbour)?.at();
+        let heading = Heading::towards(place.at(), there).unwrap_or(facing);
+        let flat_m = libm::hypot(there.x - place.at().x, there.y - place.at().y);
+        let slope_rad = libm::atan2(there.z - place.at().z, flat_m);
+        let turn_deg = facing.turn_to(heading).to_degrees();
+        let stairs = match slope_rad {
+            up if up > STAIRS_RAD => ", up",
+            down if down < -STAIRS_RAD => ", down",
+            _ => "",
+        };
+        let words = format!("{}{stairs}", side(turn_deg));
+        let metres = place.at().distance(there);
+        Some((turn_deg, Way { id: index.to_string(), deg: round(heading.deg()), words, metres: round(metres) }))
+    };
+    let mut ways: Vec<(f64, Way)> = place.neighbours.iter().enumerate().filter_map(way).collect();
+    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ways.into_iter().map(|(_, way)| way).collect()
+}
+
+fn round(number: f64) -> f64 {
+    (number * 10.0).round() / 10.0
+}
+
+/// A turn in words. The bounds are those of turn words (`core::motion`), but finer: two doors side by side need two words.
+fn side(turn_deg: f64) -> &'static str {
+    match turn_deg.abs() {
+        turn if turn < 15.0 => "ahead",
+        turn if turn > 155.0 => "back",
+        turn if turn < 60.0 => ["slightly to the right", "slightly to the left"][usize::from(turn_deg < 0.0)],
+        turn if turn < 120.0 => ["to the right", "to the left"][usize::from(turn_deg < 0.0)],
+        _ => ["back, to the right", "back, to the left"][usize::from(turn_deg < 0.0)],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+    use wayword_core::{SceneId, ViewpointId};
+
+    #[test]
+    fn ways_go_from_left_to_right_and_say_stairs() {
+        let id = |name: &str| ViewpointId::new(name).unwrap();
+        let place = |position: [f64; 3], neighbours: &[&str]| Place {
+            position,
+            level: None,
+            neighbours: neighbours.iter().map(|name| id(name)).collect(),
+            panorama: String::new(),
+        };
+        let places = BTreeMap::from([
+            (id("here"), place([0.0; 3], &["east", "west", "stairs"])),
+            (id("east"), place([2.0, 0.0, 0.0], &[])),
+            (id("west"), place([-2.0, 0.0, 0.0], &[])),
+            (id("stairs"), place([0.0, 2.0, 1.5], &[])),
+        ]);
+        let scene = Scene { scene: SceneId::new("s").unwrap(), places };
+        let found = ways(&scene, &scene.places[&id("here")], Heading::NORTH);
+        let told: Vec<(&str, &str)> = found.iter().map(|way| (way.id.as_str(), way.words.as_str())).collect();
+        assert_eq!(told, [("1", "to the left"), ("2", "ahead, up"), ("0", "to the right")]);
+        assert_eq!(found[1].metres, 2.5);
+    }
+}

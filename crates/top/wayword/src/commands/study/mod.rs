@@ -1,0 +1,81 @@
+//! `wayword study`.
+
+mod new;
+mod pictures;
+mod serve;
+mod told;
+mod walks;
+
+use crate::{
+    cli::{Study as Args, StudyCommand, StudyForget, StudyInvite, StudyResults, StudyStatus},
+    error::{Error, Exit},
+    output::Output,
+};
+use serde::Serialize;
+use std::path::PathBuf;
+use told::{Closed, Links, Matched, Removed, Standing};
+use wayword_study::Study;
+
+pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+    match &args.command {
+        StudyCommand::New(args) => new::make(args, output)?,
+        StudyCommand::Serve(args) => return serve::run(args, output),
+        StudyCommand::Invite(args) => invite(args, output)?,
+        StudyCommand::Plan(_) => return Err(Error::usage("PLAN PENDING", "")),
+        StudyCommand::Status(args) => status(args, output)?,
+        StudyCommand::Results(args) => results(args, output)?,
+        StudyCommand::Forget(args) => forget(args, output)?,
+        StudyCommand::Reconcile(args) => {
+            let matched = Study::open(&args.study)?.reconcile(&args.csv)?;
+            output.data(&matched, Matched(&matched));
+        }
+        StudyCommand::Close(args) => {
+            Study::open(&args.study)?.close(args.even_if_live)?;
+            output.data(&Closed, Closed);
+        }
+    }
+    Ok(Exit::Done)
+}
+
+fn invite(args: &StudyInvite, output: &Output) -> Result<(), Error> {
+    let links = links(&Study::open(&args.study)?, args.count, &args.url)?;
+    output.data(&links, &links);
+    Ok(())
+}
+
+/// New personal links to the site at an address.
+fn links(study: &Study, count: u32, url: &str) -> Result<Links, Error> {
+    let tokens = study.invite(count)?.tokens;
+    Ok(Links { links: tokens.into_iter().map(|token| format!("{url}/t/{token}")).collect() })
+}
+
+fn status(args: &StudyStatus, output: &Output) -> Result<(), Error> {
+    let study = Study::open(&args.study)?;
+    let progress = study.progress()?;
+    let participants = args.participants.then(|| study.data().map(|data| data.participants)).transpose()?;
+    let standing = Standing { progress, participants };
+    output.data(&standing, &standing);
+    Ok(())
+}
+
+fn forget(args: &StudyForget, output: &Output) -> Result<(), Error> {
+    let study = Study::open(&args.study)?;
+    let exports = study.exports()?;
+    let removed = Removed { removed: study.forget(&args.participant, args.dry_run)?, exports };
+    output.data(&removed, &removed);
+    Ok(())
+}
+
+/// What `results` wrote.
+#[derive(Debug, Serialize)]
+struct Written {
+    files: Vec<PathBuf>,
+}
+
+fn results(args: &StudyResults, output: &Output) -> Result<(), Error> {
+    let study = Study::open(&args.study)?;
+    study.note_export(&args.out)?;
+    let data = study.data()?;
+    drop((data, Written { files: Vec::new() }));
+    Err(Error::usage("RESULTS PENDING", ""))
+}

@@ -1,0 +1,211 @@
+//! Which paths a study has, with which texts.
+
+use crate::{
+    cli::{By, Control, StudyNew},
+    count::count,
+    episodes,
+    error::Error,
+    texts,
+};
+use rand::{Rng as _, seq::SliceRandom as _};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
+use wayword_core::{Heading, Path, Platform, SceneId, ViewpointId, rng};
+use wayword_formats::{Format, detect, jsonl};
+use wayword_metrics::Distances;
+use wayword_navigation::swap::{Candidate, other_path};
+use wayword_study::{Condition, Kind, Mode, Told};
+use wayword_world::path_of;
+
+/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
+const SAME_GOAL_M: f64 = 3.0;
+/// The conditions of the controls.
+const PEOPLE: &str = "people";
+const OTHER_PATH: &str = "other-path";
+
+/// A path with one text for each condition, in the order of the conditions.
+#[derive(Debug)]
+pub(super) struct Walk {
+    pub(super) name: String,
+    pub(super) path: Path,
+    pub(super) viewpoints: Vec<ViewpointId>,
+    pub(super) start_heading: Heading,
+    pub(super) told: Vec<Told>,
+}
+
+/// An item before its texts are known.
+struct Bare {
+    id: String,
+    name: String,
+    path: Path,
+    viewpoints: Vec<ViewpointId>,
+    people: Vec<String>,
+}
+
+/// The conditions of a study.
+///
+/// # Errors
+/// When two have one name, or a control lacks what it needs.
+pub(super) fn conditions(args: &StudyNew) -> Result<Vec<Condition>, Error> {
+    let run =
+        |set: &crate::cli::NamedSet| Condition { name: set.name.clone(), kind: Kind::Run, source: set.source.clone() };
+    let mut all: Vec<Condition> = args.run.iter().map(run).collect();
+    if args.include.contains(&Control::People) {
+        let Some(file) = &args.episodes else {
+            let problem = "--include people: it is not known which texts people wrote";
+            return Err(Error::usage(problem, "give the dataset's file with --episodes"));
+        };
+        all.push(Condition { name: PEOPLE.to_owned(), kind: Kind::People, source: file.display().to_string() });
+    }
+    if args.include.contains(&Control::OtherPath) {
+        let of = if args.include.contains(&Control::People) { PEOPLE } else { &args.run[0].name };
+        all.push(Condition { name: OTHER_PATH.to_owned(), kind: Kind::OtherPath, source: of.to_owned() });
+    }
+    let names: BTreeSet<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
+    if names.len() < all.len() {
+        return Err(Error::usage(
+            "two conditions have one name",
+            "give each --run its own name, and none that of a control",
+        ));
+    }
+    if args.mode == crate::cli::StudyMode::Pair && all.len() < 2 {
+        return Err(Error::usage(
+            "--mode pair: there is one condition, so nothing to choose between",
+            "give a second --run, or --include",
+        ));
+    }
+    Ok(all)
+}
+
+/// The paths that have a text of every condition, one for each path, in an order drawn by the seed.
+///
+/// # Errors
+/// When files cannot be read, or no path has texts of all conditions.
+pub(super) fn walks(
+    args: &StudyNew,
+    mode: Mode,
+    conditions: &[Condition],
+    platform: &dyn Platform,
+) -> Result<Vec<Walk>, Error> {
+    let bare = bare(args, mode, platform)?;
+    let sets = sets(conditions)?;
+    let mut drawn = rng(args.seed, &["study", "texts"]);
+    let elsewhere = elsewhere(&bare, platform, args.seed)?;
+    // Of several texts of one item, one is drawn.
+    let mut texts: Vec<BTreeMap<&str, String>> = Vec::new();
+    for item in &bare {
+        let mut of_item = BTreeMap::new();
+        for condition in conditions {
+            let found = match condition.kind {
+                Kind::Run => sets.get(condition.name.as_str()).and_then(|set| set.get(&item.id)),
+                Kind::People => Some(&item.people),
+                Kind::OtherPath => None,
+            };
+            if let Some(found) = found.filter(|found| !found.is_empty()) {
+                of_item.insert(condition.name.as_str(), found[drawn.random_range(0..found.len())].clone());
+            }
+        }
+        texts.push(of_item);
+    }
+    let told = |at: usize| -> Option<Vec<Told>> {
+        let text = |condition: &Condition| {
+            let text = match condition.kind {
+                Kind::OtherPath => texts.get(elsewhere.get(at).copied().flatten()?)?.get(condition.source.as_str()),
+                _ => texts[at].get(condition.name.as_str()),
+            };
+            Some(Told { condition: condition.name.clone(), text: text?.clone() })
+        };
+        conditions.iter().map(text).collect()
+    };
+    let mut order: Vec<usize> = (0..bare.len()).collect();
+    order.shuffle(&mut rng(args.seed, &["study", "paths"]));
+    let told: BTreeMap<usize, Vec<Told>> = order.iter().filter_map(|at| Some((*at, told(*at)?))).collect();
+    let mut seen = BTreeSet::new();
+    order.retain(|at| told.contains_key(at) && seen.insert(bare[*at].name.clone()));
+    if order.is_empty() {
+        let problem = format!("none of {} has a text of every condition", count(bare.len(), "path"));
+        let hint =
+            "items are matched by id: give runs of the same paths; other-path needs a second path in the same scene";
+        return Err(Error::usage(problem, hint));
+    }
+    let mut told = told;
+    let mut bare: Vec<Option<Bare>> = bare.into_iter().map(Some).collect();
+    let walk = |at: usize| {
+        let Bare { name, path, viewpoints, .. } = bare[at].take()?;
+        let start_heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
+        Some(Walk { name, path, viewpoints, start_heading, told: told.remove(&at)? })
+    };
+    Ok(order.into_iter().filter_map(walk).collect())
+}
+
+/// The texts of each run by item.
+fn sets(conditions: &[Condition]) -> Result<BTreeMap<&str, BTreeMap<String, Vec<String>>>, Error> {
+    let runs = conditions.iter().filter(|condition| condition.kind == Kind::Run);
+    let read = |condition: &'_ Condition| -> Result<_, Error> {
+        let set = texts::set(&condition.source, None, By::Item)?;
+        Ok(set.into_iter().map(|(item, texts)| (item, texts.texts)).collect())
+    };
+    runs.map(|condition| Ok((condition.name.as_str(), read(condition)?))).collect()
+}
+
+/// The paths of the episodes, or of the first run.
+fn bare(args: &StudyNew, mode: Mode, platform: &dyn Platform) -> Result<Vec<Bare>, Error> {
+    let file: PathBuf = args.episodes.clone().unwrap_or_else(|| texts::file_of(&args.run[0].source));
+    let is_walked = mode == Mode::Follow;
+    if detect(&file)? != Format::Wayword {
+        let read = if is_walked { episodes::read(&file, platform)? } else { wayword_formats::read(&file)? };
+        let bare = |episode: wayword_formats::Episode| {
+            let object = episode.target_object.as_ref();
+            let path =
+                path_of(platform, &*episode.id, &episode.scene, &episode.viewpoints, episode.start_heading, object)?;
+            let name = episodes::cluster(&episode);
+            Ok(Bare { id: episode.id, name, path, viewpoints: episode.viewpoints, people: episode.instructions })
+        };
+        return read.into_iter().map(bare).collect();
+    }
+    let viewpoints: BTreeMap<String, Vec<ViewpointId>> = if is_walked {
+        episodes::read(&file, platform)?.into_iter().map(|episode| (episode.id, episode.viewpoints)).collect()
+    } else {
+        BTreeMap::new()
+    };
+    let mut all: Vec<Bare> = Vec::new();
+    let mut index: BTreeMap<String, usize> = BTreeMap::new();
+    for record in jsonl::read(&file)? {
+        let at = *index.entry(record.path.id.clone()).or_insert_with(|| {
+            let id = record.path.id.clone();
+            let name = episodes::path_name(&record.path.scene, &record.path_id());
+            let viewpoints = viewpoints.get(&id).cloned().unwrap_or_default();
+            all.push(Bare { id, name, path: record.path.clone(), viewpoints, people: Vec::new() });
+            all.len() - 1
+        });
+        all[at].people.push(record.instruction.text);
+    }
+    Ok(all)
+}
+
+/// For each path, another one of the same scene that ends elsewhere.
+fn elsewhere(bare: &[Bare], platform: &dyn Platform, seed: u64) -> Result<Vec<Option<usize>>, Error> {
+    let mut distances: BTreeMap<SceneId, Distances> = BTreeMap::new();
+    let mut candidates = Vec::new();
+    for item in bare {
+        let scene = item.path.scene.clone();
+        let goal =
+            item.viewpoints.last().or_else(|| item.path.frames.last().and_then(|frame| frame.viewpoint.as_ref()));
+        if goal.is_some() && !distances.contains_key(&scene) {
+            distances.insert(scene.clone(), Distances::new(&*platform.graph(&scene)?));
+        }
+        // A path without viewpoints ends at a place of its own.
+        let goal = goal.cloned().or_else(|| ViewpointId::new(format!("end-of-{}", item.id)).ok());
+        let Some(goal) = goal else {
+            return Err(Error::usage(format!("item {}: it has no usable id", item.id), "give it another"));
+        };
+        candidates.push(Candidate { id: item.id.clone(), scene, goal, cluster: item.name.clone() });
+    }
+    let is_far = |a: &Candidate, b: &Candidate| {
+        let apart_m = distances.get(&a.scene).and_then(|distances| distances.metres(&a.goal, &b.goal));
+        apart_m.is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
+    };
+    Ok((0..candidates.len()).map(|at| other_path(&candidates, at, seed, &is_far)).collect())
+}

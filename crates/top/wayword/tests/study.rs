@@ -1,0 +1,235 @@
+//! `wayword study` as its users see it: a study is made, people take part in it over HTTP, the site is killed, and the results are there.
+
+#![cfg(feature = "study")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Ran, command, run};
+use serde_json::Value;
+use std::{
+    collections::BTreeMap,
+    io::{BufRead as _, BufReader, Read as _, Write as _},
+    net::TcpStream,
+    path::Path,
+    process::{Child, Stdio},
+    time::Duration,
+};
+
+/// A site that runs until it is dropped.
+struct Site {
+    child: Child,
+    address: String,
+    links: Vec<String>,
+}
+
+impl Site {
+    fn of(study: &Path, links: &str) -> Self {
+        let mut command = command(&[
+            "study",
+            "serve",
+            study.to_str().unwrap(),
+            "--listen",
+            "127.0.0.1:0",
+            "--links",
+            links,
+            "--json",
+        ]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut line = String::new();
+        BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let told: Value = serde_json::from_str(&line).unwrap();
+        let address = told["url"].as_str().unwrap().trim_start_matches("http://").to_owned();
+        let path =
+            |link: &Value| link.as_str().unwrap().split_once("/t/").map(|(_, token)| format!("/t/{token}")).unwrap();
+        Self { child, address, links: told["links"].as_array().unwrap().iter().map(path).collect() }
+    }
+}
+
+impl Drop for Site {
+    fn drop(&mut self) {
+        // SIGKILL: what was acknowledged has to survive it.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A participant's browser, without script.
+struct Browser {
+    address: String,
+    cookies: BTreeMap<String, String>,
+    page: String,
+    status: u16,
+}
+
+impl Browser {
+    fn at(site: &Site) -> Self {
+        Self { address: site.address.clone(), cookies: BTreeMap::new(), page: String::new(), status: 0 }
+    }
+
+    fn send(&mut self, method: &str, path: &str, body: &str) -> Option<String> {
+        let cookies: Vec<String> = self.cookies.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let address = &self.address;
+        let request = format!(
+            "{method} {path} HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\nCookie: {}\r\nConnection: close\r\n\
+             Content-Type: application/x-www-form-urlencoded\r\nContent-Length: {}\r\n\r\n{body}",
+            cookies.join("; "),
+            body.len()
+        );
+        let mut stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        let end = answer.windows(4).position(|window| window == b"\r\n\r\n").unwrap();
+        let head = String::from_utf8(answer[..end].to_vec()).unwrap();
+        self.status = head.split_whitespace().nth(1).unwrap().parse().unwrap();
+        self.page = String::from_utf8_lossy(&answer[end + 4..]).into_owned();
+        let mut location = None;
+        for line in head.lines() {
+            let (name, value) = line.split_once(": ").unwrap_or_default();
+            match name.to_ascii_lowercase().as_str() {
+                "set-cookie" => {
+                    let (name, value) = value.split(';').next().unwrap().split_once('=').unwrap();
+                    if value.is_empty() {
+                        self.cookies.remove(name);
+                    } else {
+                        self.cookies.insert(name.to_owned(), value.to_owned());
+                    }
+                }
+                "location" => location = Some(value.to_owned()),
+                _ => {}
+            }
+        }
+        location
+    }
+
+    fn get(&mut self, path: &str) {
+        let mut next = self.send("GET", path, "");
+        while let Some(path) = next {
+            next = self.send("GET", &path, "");
+        }
+    }
+
+    /// Sends a form; what the server answers has to be an acknowledgement.
+    fn post(&mut self, path: &str, body: &str) {
+        let onwards = self.send("POST", path, body);
+        assert_eq!(self.status, 303, "{path} {body}: {}", self.page);
+        self.get(&onwards.unwrap());
+    }
+
+    /// The page, by its name.
+    fn name(&self) -> &str {
+        self.page.split("data-page=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or("none")
+    }
+
+    fn field(&self, name: &str) -> String {
+        let after = self.page.split(&format!("name=\"{name}\" value=\"")).nth(1);
+        after.and_then(|rest| rest.split('"').next()).unwrap_or_default().to_owned()
+    }
+
+    /// Does what the page asks for, in some way. `false` at the end.
+    fn go_on(&mut self, steps: usize) -> bool {
+        let slot = self.field("slot");
+        match self.name() {
+            "consent" => self.post("/consent", "agree=yes"),
+            "understood" => self.post("/understood", &format!("try={}&{}", self.field("try"), RIGHT)),
+            "follow" => {
+                let seq: usize = self.field("seq").parse().unwrap();
+                if seq < steps {
+                    self.post("/move", &format!("slot={slot}&seq={seq}&to={}", self.field("to")));
+                } else {
+                    self.post("/stop", &format!("slot={slot}&seq={seq}&looks=3"));
+                }
+            }
+            "follow_after" => self.post("/answer", &format!("slot={slot}&s0=4&s1=5&s2=2")),
+            "watch" => self.post("/write", &format!("slot={slot}&own_text=%3Dcmd%28%29+%3Cscript%3E")),
+            "rate" => self.post("/answer", &format!("slot={slot}&q0=2&q1=4&q2=1&q3=5")),
+            "pair" => self.post("/answer", &format!("slot={slot}&choice=a")),
+            "attention" => {
+                let asked =
+                    LEVELS.iter().position(|level| self.page.contains(&format!("\u{201c}{level}\u{201d}"))).unwrap();
+                self.post("/attention", &format!("number={}&choice={}", self.field("number"), asked + 1));
+            }
+            "done" => return false,
+            name => panic!("{name}: {}", self.page),
+        }
+        true
+    }
+}
+
+/// The right answers to the questions about walking.
+const RIGHT: &str = "q0=1&q1=0";
+const LEVELS: [&str; 5] = ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
+
+fn wayword(folder: &Path, args: &[&str]) -> Ran {
+    let ran = run(command(args).current_dir(folder));
+    assert_eq!(ran.code, Some(0), "{args:?}: {ran:?}");
+    ran
+}
+
+/// A run of three paths in a generated house.
+fn houses() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    wayword(
+        folder.path(),
+        &["generate", "--paths", "3", "--scan", "house-1", "--style", "r2r", "--seed", "3", "--out", "run"],
+    );
+    folder
+}
+
+#[test]
+fn people_walk_through_kills_and_their_walks_are_scored() {
+    let folder = houses();
+    let make = [
+        "study",
+        "new",
+        "--run",
+        "ours=run#r2r",
+        "--include",
+        "other-path",
+        "--mode",
+        "follow",
+        "--items",
+        "2",
+        "--per-item",
+        "1",
+    ];
+    let made = wayword(folder.path(), &[&make[..], &["--out", "study", "--json"]].concat()).json();
+    assert_eq!((made["items"].as_u64(), made["has_practice"].as_bool()), (Some(4), Some(true)), "{made}");
+    let study = folder.path().join("study");
+    let site = Site::of(&study, "2");
+    let links = site.links.clone();
+    let mut first = Browser::at(&site);
+    first.get(&links[0]);
+    assert_eq!(first.name(), "consent");
+    for _ in 0..5 {
+        assert!(first.go_on(2));
+    }
+    let before = first.page.clone();
+    drop(site);
+
+    // The same cookie and the same link go on at the same place, on a server that was killed.
+    let site = Site::of(&study, "0");
+    first.address.clone_from(&site.address);
+    first.get("/");
+    assert_eq!(first.page, before);
+    let mut other_device = Browser::at(&site);
+    other_device.get(&links[0]);
+    assert_eq!(other_device.name(), first.name());
+    assert_eq!(other_device.field("slot"), first.field("slot"));
+    while first.go_on(2) {}
+    let mut second = Browser::at(&site);
+    second.get(&links[1]);
+    while second.go_on(0) {}
+
+    let status = wayword(folder.path(), &["study", "status", "study", "--json"]).json();
+    assert_eq!(status["participants"]["complete"], 2, "{status}");
+    assert!(status["rows"].as_array().unwrap().iter().all(|row| row["answered"] == 2), "{status}");
+    let page = fs_text(&study.join("study.db"));
+    assert!(!page.contains(links[0].trim_start_matches("/t/")), "a token stands in the database");
+}
+
+fn fs_text(file: &Path) -> String {
+    String::from_utf8_lossy(&std::fs::read(file).unwrap()).into_owned()
+}
