@@ -11,7 +11,7 @@ mod study;
 mod trajectory;
 mod words;
 
-pub use bootstrap::{Estimate, clustered_interval};
+pub use bootstrap::{Estimate, clustered_interval, clustered_interval_of};
 pub use mcnemar::McNemar;
 pub use similarity::{Drawing, Said, Similarity, similarity};
 pub use study::{

@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn more_items_narrow_the_interval() {
         let of = |items: u32| -> Agreement {
-            let value = |n: u32| f64::from((n / 3 * 7 + n % 3 * (n % 2)) % 5);
+            let value = |n: u32| f64::from((n.wrapping_mul(2_654_435_761) >> 16) % 3 + n / 3 % 3);
             let all: Vec<_> = (0..3 * items).map(|n| Answer { person: n % 30, item: n / 3, value: value(n) }).collect();
             agreement(&all, Scale::Ordinal, 0.95).unwrap()
         };
