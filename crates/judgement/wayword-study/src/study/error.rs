@@ -1,0 +1,67 @@
+//! Why a study cannot be made, served or read.
+
+use std::{io, path::PathBuf};
+
+/// What went wrong, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A file operation failed.
+    #[error("{}: cannot {doing}: {source}", path.display())]
+    Io {
+        /// Which file or folder.
+        path: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// A file of the study cannot be used.
+    #[error("{}: {problem}\nhint: {hint}", path.display())]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong, and where in the file.
+        problem: String,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// The user asked for something that cannot be done.
+    #[error("{problem}\nhint: {hint}")]
+    Refused {
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        hint: String,
+    },
+    /// The database cannot be used.
+    #[error("study.db: {source}\nhint: {}", hint_of(source))]
+    Store {
+        /// Its error.
+        #[from]
+        source: rusqlite::Error,
+    },
+}
+
+impl StudyError {
+    pub(crate) fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, doing, source }
+    }
+
+    pub(crate) fn refused(problem: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self::Refused { problem: problem.into(), hint: hint.into() }
+    }
+}
+
+fn hint_of(error: &rusqlite::Error) -> &'static str {
+    use rusqlite::ErrorCode;
+    match error.sqlite_error_code() {
+        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => "another process is writing to it; try again",
+        Some(ErrorCode::DiskFull) => "free some space, and try again; what was acknowledged is kept",
+        Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
+            "check that the folder exists and can be written"
+        }
+        Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => "it is damaged: put back a copy of the folder",
+        _ => "check the folder and its disk",
+    }
+}

@@ -1,0 +1,110 @@
+//! What people are given: texts, the routes they belong to, and the scenes that are walked.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use wayword_core::{DVec3, Heading, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
+
+/// What one person does at a time: a route with one text, or with two where texts are compared.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Item {
+    /// Its number in the study, from 0.
+    pub id: u32,
+    /// The number of its route.
+    pub route: u32,
+    /// Whether it is only for practice: everybody gets it first, and it is in no figure.
+    #[serde(default)]
+    pub is_practice: bool,
+    /// One text; two where texts are compared.
+    pub texts: Vec<Told>,
+}
+
+/// A text and the condition that it stands for.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Told {
+    /// Name of the condition.
+    pub condition: String,
+    /// The instruction.
+    pub text: String,
+}
+
+/// A path that texts tell of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Route {
+    /// Its number in the study, from 0.
+    pub id: u32,
+    /// Its name in the dataset or run, unique over all scenes.
+    pub name: String,
+    /// The scene.
+    pub scene: SceneId,
+    /// The viewpoints from start to goal; empty where the path has none.
+    pub viewpoints: Vec<ViewpointId>,
+    /// Where a walker looks at the start.
+    pub start_heading: Heading,
+    /// What is seen along it, in order; empty where people walk by themselves.
+    #[serde(default)]
+    pub film: Vec<Picture>,
+}
+
+/// A picture of a film.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Picture {
+    /// Its file in the folder `pictures`.
+    pub file: String,
+    /// What stands in its place where it cannot be seen. It names no thing that only the picture shows.
+    pub alt: String,
+}
+
+/// The ground that people walk.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// The scene.
+    pub scene: SceneId,
+    /// Its viewpoints.
+    pub places: BTreeMap<ViewpointId, Place>,
+}
+
+/// A viewpoint with what is seen from it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// Metres, in the world frame, at the height of the eye.
+    pub position: [f64; 3],
+    /// Its storey, the lowest is 1, where it is known.
+    pub level: Option<u32>,
+    /// Where one can go from it.
+    pub neighbours: Vec<ViewpointId>,
+    /// Its panorama: a file in the folder `pictures`. North is in the middle.
+    pub panorama: String,
+}
+
+impl Place {
+    /// Its position, metres.
+    #[must_use]
+    pub fn at(&self) -> DVec3 {
+        DVec3::from_array(self.position)
+    }
+}
+
+impl Scene {
+    /// The graph of its places.
+    ///
+    /// # Errors
+    /// When a place names a neighbour that the scene does not have.
+    pub fn graph(&self) -> Result<ViewpointGraph, GraphError> {
+        let mut graph = ViewpointGraph::default();
+        for (id, place) in &self.places {
+            graph.add(id.clone(), place.at(), place.level)?;
+        }
+        for (id, place) in &self.places {
+            for neighbour in &place.neighbours {
+                graph.join(id, neighbour)?;
+            }
+        }
+        Ok(graph)
+    }
+}

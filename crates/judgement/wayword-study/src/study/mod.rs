@@ -1,0 +1,15 @@
+//! What a study consists of, and its folder.
+
+mod data;
+mod error;
+mod folder;
+mod item;
+mod plan;
+mod settings;
+
+pub use data::{Answer, Choice, Data, Move, Participant, Passed, Slot, SlotState, Status};
+pub use error::StudyError;
+pub use folder::Study;
+pub use item::{Item, Picture, Place, Route, Scene, Told};
+pub use plan::{Condition, Kind, Mode, Plan};
+pub use settings::Settings;

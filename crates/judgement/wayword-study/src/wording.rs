@@ -1,0 +1,53 @@
+//! The questions that people answer. The results print them, so they are the same in every study.
+
+/// A question with the words of its five levels, from 1 to 5.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct Scale {
+    /// Its short name in tables and files.
+    pub name: &'static str,
+    /// What is asked, or stated.
+    pub text: &'static str,
+    /// What the levels are called.
+    pub levels: [&'static str; 5],
+}
+
+const AGREEMENT: [&str; 5] =
+    ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
+
+/// After a walk: the three statements of HEAR's study (Zhao et al. 2024), in our words.
+pub const STATEMENTS: [Scale; 3] = [
+    Scale { name: "easy", text: "The text was easy to follow.", levels: AGREEMENT },
+    Scale {
+        name: "confident",
+        text: "I am confident that I went the way that the text describes.",
+        levels: AGREEMENT,
+    },
+    Scale { name: "demanding", text: "Following the text was mentally demanding.", levels: AGREEMENT },
+];
+
+/// About a text: the four questions of arXiv 2403.11487. Its wording and scale are lost; these words are ours.
+pub const QUESTIONS: [Scale; 4] = [
+    Scale {
+        name: "similar",
+        text: "How similar is this text to one that you would write?",
+        levels: ["Very different", "Minor overlaps", "Partly similar", "Mostly similar", "Almost the same"],
+    },
+    Scale {
+        name: "accurate",
+        text: "How accurately does the text describe the walk?",
+        levels: ["Not at all", "A little", "Decently", "Well", "Very well"],
+    },
+    Scale {
+        name: "ghosts",
+        text: "Does the text name things that you did not see in the walk?",
+        levels: ["None", "One", "Two", "Three", "More than three"],
+    },
+    Scale {
+        name: "reachable",
+        text: "Could a robot reach the end of the walk by this text?",
+        levels: ["Certainly not", "Probably not", "Perhaps", "Probably", "Certainly"],
+    },
+];
+
+/// The levels of an attention check.
+pub const AGREEMENT_LEVELS: [&str; 5] = AGREEMENT;
