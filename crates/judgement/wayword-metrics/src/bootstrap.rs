@@ -74,7 +74,7 @@ impl Sum {
 }
 
 /// A quantile of sorted values, interpolated where it falls between two.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let below = sorted[at.floor() as usize];
     below + (sorted[at.ceil() as usize] - below) * at.fract()

@@ -1,0 +1,230 @@
+//! The most likely parameters: strengths but the last one's, which is 0; the side; the tie.
+//!
+//! The three outcomes are a multinomial logit whose utilities are linear in the parameters, so the likelihood has one top, and
+//! Newton's method reaches it.
+
+use super::NoStrength;
+use std::collections::BTreeMap;
+
+/// The outcome of a choice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Outcome {
+    First,
+    Second,
+    Tie,
+}
+
+/// A choice between two systems, by number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Pair {
+    pub(super) first: usize,
+    pub(super) second: usize,
+    pub(super) outcome: Outcome,
+}
+
+/// Newton's method ends where no parameter moves by more.
+const PRECISION: f64 = 1e-12;
+const MOST_STEPS: usize = 100;
+/// A likelihood that falls by a smaller share only lost digits.
+const ROUNDING: f64 = 1e-12;
+/// Odds of e^20 are beyond what choices of people can show; a likelihood that leads there has no top.
+const MOST: f64 = 20.0;
+
+/// Parameters with what each choice contributes to their error.
+pub(super) struct Fit {
+    systems: usize,
+    has_ties: bool,
+    parameters: Vec<f64>,
+    /// By what was chosen between which two.
+    scores: BTreeMap<Pair, Vec<f64>>,
+    information: Cholesky,
+}
+
+impl Fit {
+    pub(super) fn of(pairs: &[Pair], systems: usize) -> Result<Self, NoStrength> {
+        let has_ties = pairs.iter().any(|pair| pair.outcome == Outcome::Tie);
+        let mut counts: BTreeMap<Pair, f64> = BTreeMap::new();
+        pairs.iter().for_each(|pair| *counts.entry(*pair).or_default() += 1.0);
+        let model = Model { systems, has_ties, counts };
+        let mut parameters = vec![0.0; model.size()];
+        for step in 0..MOST_STEPS {
+            let Top { likelihood, gradient, scores, information } = model.at(&parameters);
+            let singular = if step == 0 { NoStrength::Sides } else { NoStrength::Endless };
+            let information = Cholesky::of(information).ok_or(singular)?;
+            let mut step = information.solve(&gradient);
+            while model.at(&added(&parameters, &step)).likelihood < likelihood - ROUNDING * likelihood.abs() {
+                step.iter_mut().for_each(|part| *part /= 2.0);
+            }
+            parameters = added(&parameters, &step);
+            if parameters.iter().any(|value| value.abs() > MOST) {
+                return Err(NoStrength::Endless);
+            }
+            if step.iter().all(|part| part.abs() <= PRECISION) {
+                return Ok(Self { systems, has_ties, parameters, scores, information });
+            }
+        }
+        Err(NoStrength::Endless)
+    }
+
+    /// A system's strength above the mean of all, as a sum of parameters.
+    pub(super) fn strength(&self, system: usize) -> Vec<f64> {
+        let mut direction = vec![0.0; self.parameters.len()];
+        let mean = 1.0 / self.systems as f64;
+        direction[..self.systems - 1].iter_mut().for_each(|part| *part = -mean);
+        if system + 1 < self.systems {
+            direction[system] += 1.0;
+        }
+        direction
+    }
+
+    pub(super) fn side(&self) -> Vec<f64> {
+        self.unit(self.systems - 1)
+    }
+
+    pub(super) fn tie(&self) -> Option<Vec<f64>> {
+        self.has_ties.then(|| self.unit(self.systems))
+    }
+
+    fn unit(&self, at: usize) -> Vec<f64> {
+        (0..self.parameters.len()).map(|other| f64::from(u8::from(other == at))).collect()
+    }
+
+    pub(super) fn value(&self, direction: &[f64]) -> f64 {
+        dot(&self.parameters, direction)
+    }
+
+    /// What each choice contributes to the error of a sum of parameters.
+    pub(super) fn influence(&self, direction: &[f64], pairs: &[Pair]) -> Vec<f64> {
+        let weights = self.information.solve(direction);
+        pairs.iter().map(|pair| self.scores.get(pair).map_or(0.0, |score| dot(score, &weights))).collect()
+    }
+}
+
+/// Which parameters there are, and how often each choice was made.
+struct Model {
+    systems: usize,
+    has_ties: bool,
+    counts: BTreeMap<Pair, f64>,
+}
+
+/// The logarithm of the likelihood at some parameters, with its derivatives.
+struct Top {
+    likelihood: f64,
+    gradient: Vec<f64>,
+    scores: BTreeMap<Pair, Vec<f64>>,
+    information: Vec<Vec<f64>>,
+}
+
+impl Model {
+    fn size(&self) -> usize {
+        self.systems + usize::from(self.has_ties)
+    }
+
+    fn at(&self, parameters: &[f64]) -> Top {
+        let size = self.size();
+        let none = || vec![0.0; size];
+        let mut top =
+            Top { likelihood: 0.0, gradient: none(), scores: BTreeMap::new(), information: vec![none(); size] };
+        for (pair, count) in &self.counts {
+            let utilities = self.utilities(pair);
+            let utilities = &utilities[..if self.has_ties { 3 } else { 2 }];
+            let logs = chances_ln(utilities, parameters);
+            let mut mean = none();
+            utilities.iter().zip(&logs).for_each(|(utility, ln)| add(&mut mean, ln.exp(), utility));
+            let happened = pair.outcome as usize;
+            let score = apart(&utilities[happened], &mean);
+            top.likelihood += count * logs[happened];
+            add(&mut top.gradient, *count, &score);
+            top.scores.insert(*pair, score);
+            for (utility, ln) in utilities.iter().zip(&logs) {
+                let apart = apart(utility, &mean);
+                let rows = top.information.iter_mut().zip(&apart);
+                rows.for_each(|(row, part)| add(row, count * ln.exp() * part, &apart));
+            }
+        }
+        top
+    }
+
+    /// What each parameter adds to the first's, the second's and the tie's utility.
+    fn utilities(&self, pair: &Pair) -> [Vec<f64>; 3] {
+        let side = self.systems - 1;
+        let mut utilities = [(); 3].map(|()| vec![0.0; self.size()]);
+        if pair.first < side {
+            utilities[0][pair.first] = 1.0;
+            utilities[2][pair.first] = 0.5;
+        }
+        if pair.second < side {
+            utilities[1][pair.second] = 1.0;
+            utilities[2][pair.second] = 0.5;
+        }
+        utilities[0][side] = 1.0;
+        utilities[2][side] = 0.5;
+        if self.has_ties {
+            utilities[2][self.systems] = 1.0;
+        }
+        utilities
+    }
+}
+
+/// A symmetric matrix as the product of a lower triangle and its mirror image.
+struct Cholesky(Vec<Vec<f64>>);
+
+impl Cholesky {
+    /// `None` where the matrix is singular.
+    fn of(mut matrix: Vec<Vec<f64>>) -> Option<Self> {
+        let size = matrix.len();
+        let greatest = (0..size).map(|at| matrix[at][at]).fold(0.0, f64::max);
+        for row in 0..size {
+            for column in 0..=row {
+                let known: f64 = (0..column).map(|k| matrix[row][k] * matrix[column][k]).sum();
+                let left = matrix[row][column] - known;
+                if row != column {
+                    matrix[row][column] = left / matrix[column][column];
+                } else if left > 1e-11 * greatest {
+                    matrix[row][row] = left.sqrt();
+                } else {
+                    return None;
+                }
+            }
+        }
+        Some(Self(matrix))
+    }
+
+    fn solve(&self, right: &[f64]) -> Vec<f64> {
+        let Self(lower) = self;
+        let mut solved = right.to_vec();
+        for row in 0..solved.len() {
+            let known: f64 = (0..row).map(|k| lower[row][k] * solved[k]).sum();
+            solved[row] = (solved[row] - known) / lower[row][row];
+        }
+        for row in (0..solved.len()).rev() {
+            let known: f64 = (row + 1..solved.len()).map(|k| lower[k][row] * solved[k]).sum();
+            solved[row] = (solved[row] - known) / lower[row][row];
+        }
+        solved
+    }
+}
+
+/// The logarithms of the chances of outcomes with these utilities.
+fn chances_ln(utilities: &[Vec<f64>], parameters: &[f64]) -> Vec<f64> {
+    let values: Vec<f64> = utilities.iter().map(|utility| dot(utility, parameters)).collect();
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let all: f64 = values.iter().map(|value| (value - most).exp()).sum();
+    values.iter().map(|value| value - most - all.ln()).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn add(to: &mut [f64], times: f64, what: &[f64]) {
+    to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
+}
+
+fn added(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+fn apart(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}

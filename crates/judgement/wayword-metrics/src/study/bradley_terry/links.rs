@@ -1,0 +1,72 @@
+//! Whether choices hold systems together: strengths are finite only where each system can be reached from each other one by
+//! choices that were not lost (Ford 1957; Davidson 1970 for ties).
+
+use super::NoStrength;
+use super::fit::{Outcome, Pair};
+use std::fmt::Display;
+
+pub(super) fn check<S: Display>(pairs: &[Pair], systems: &[&S]) -> Result<(), NoStrength> {
+    let names = |of: &dyn Fn(usize) -> bool| -> Vec<String> {
+        systems.iter().enumerate().filter(|(at, _)| of(*at)).map(|(_, system)| system.to_string()).collect()
+    };
+    if pairs.is_empty() {
+        return Err(NoStrength::NoChoices);
+    }
+    let groups = groups(pairs, systems.len());
+    let count = groups.iter().max().map_or(0, |most| most + 1);
+    if count > 1 {
+        let groups = (0..count).map(|group| names(&|at| groups[at] == group)).collect();
+        return Err(NoStrength::Unconnected { groups });
+    }
+    if pairs.iter().all(|pair| pair.outcome == Outcome::Tie) {
+        return Err(NoStrength::OnlyTies);
+    }
+    for from in 0..systems.len() {
+        // From a system to those that lost to it or tied, and on from there.
+        let reached = reached(pairs, systems.len(), from, |pair| match pair.outcome {
+            Outcome::First => (true, false),
+            Outcome::Second => (false, true),
+            Outcome::Tie => (true, true),
+        });
+        if reached.contains(&false) {
+            return Err(NoStrength::Separated { above: names(&|at| !reached[at]), below: names(&|at| reached[at]) });
+        }
+    }
+    Ok(())
+}
+
+/// The number of the group of each system.
+fn groups(pairs: &[Pair], systems: usize) -> Vec<usize> {
+    let mut groups = vec![usize::MAX; systems];
+    let mut count = 0;
+    for from in 0..systems {
+        if groups[from] == usize::MAX {
+            let reached = reached(pairs, systems, from, |_| (true, true));
+            groups.iter_mut().zip(reached).filter(|(_, is_in)| *is_in).for_each(|(group, _)| *group = count);
+            count += 1;
+        }
+    }
+    groups
+}
+
+/// Which systems can be reached; `ways` says whether a choice leads from its first to its second, and back.
+fn reached(pairs: &[Pair], systems: usize, from: usize, ways: impl Fn(&Pair) -> (bool, bool)) -> Vec<bool> {
+    let mut next: Vec<Vec<usize>> = vec![Vec::new(); systems];
+    for pair in pairs {
+        let (there, back) = ways(pair);
+        if there {
+            next[pair.first].push(pair.second);
+        }
+        if back {
+            next[pair.second].push(pair.first);
+        }
+    }
+    let mut reached = vec![false; systems];
+    let mut open = vec![from];
+    while let Some(at) = open.pop() {
+        if !std::mem::replace(&mut reached[at], true) {
+            open.extend(&next[at]);
+        }
+    }
+    reached
+}

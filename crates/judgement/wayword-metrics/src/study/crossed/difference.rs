@@ -1,0 +1,130 @@
+//! Differences between two conditions, whose persons and items may be the same ones.
+//!
+//! The variance of the difference is that of one sum of errors over both conditions, so what a person or an item does to both
+//! of them cancels. Shares: the interval takes up those of the two shares (Zou and Donner 2008, "MOVER"), with the correlation
+//! that this variance implies. For independent answers that is Newcombe's hybrid score interval (1998, method 10).
+
+use super::{Figure, Groups, Method, around, errors, quantile};
+use crate::study::{Answer, Interval};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// The difference between two shares or means: the first minus the second.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Difference {
+    /// The difference.
+    pub value: f64,
+    /// Its interval, where one can be made.
+    pub interval: Option<Interval>,
+    /// Its standard error, where it is above 0.
+    pub se: Option<f64>,
+    /// How the interval was made.
+    pub method: Method,
+    /// The correlation of the two figures, through persons and items that are in both conditions.
+    pub correlation: f64,
+    /// The first condition's figure.
+    pub first: Figure,
+    /// The second condition's.
+    pub second: Figure,
+}
+
+/// The difference between the shares of two conditions. `None` where one of the two has no [`share`](super::share).
+#[must_use]
+pub fn share_difference<P: Ord, I: Ord>(
+    first: &[Answer<P, I>],
+    second: &[Answer<P, I>],
+    level: f64,
+) -> Option<Difference> {
+    let both = Both::of(first, second, [super::share(first, level)?, super::share(second, level)?]);
+    let interval = both.hybrid();
+    Some(both.difference(Method::Wilson, Method::Newcombe, interval))
+}
+
+/// The difference between the means of two conditions. `None` where one of the two has no [`mean`](super::mean).
+#[must_use]
+pub fn mean_difference<P: Ord, I: Ord>(
+    first: &[Answer<P, I>],
+    second: &[Answer<P, I>],
+    level: f64,
+) -> Option<Difference> {
+    let both = Both::of(first, second, [super::mean(first, level)?, super::mean(second, level)?]);
+    let interval = both.linear(level);
+    Some(both.difference(Method::Student, Method::Student, interval))
+}
+
+/// Two conditions together.
+struct Both {
+    figures: [Figure; 2],
+    se: Option<f64>,
+    /// The correlation of the two figures.
+    correlation: f64,
+    /// Whether no person and no item is in both.
+    is_apart: bool,
+    /// How many persons or items the error rests on, whichever are fewer.
+    fewest: usize,
+}
+
+impl Both {
+    fn of<P: Ord, I: Ord>(first: &[Answer<P, I>], second: &[Answer<P, I>], figures: [Figure; 2]) -> Self {
+        let groups = Groups::of(first.iter().chain(second).map(|answer| (&answer.person, &answer.item)));
+        let mut all = errors(first, figures[0].value);
+        all.extend(errors(second, figures[1].value).into_iter().map(|error| -error));
+        let [persons, items] = [
+            in_both(first, second, &figures, |answer| &answer.person, |figure| figure.persons),
+            in_both(first, second, &figures, |answer| &answer.item, |figure| figure.items),
+        ];
+        let is_apart = !persons.0 && !items.0;
+        let several = [persons.1, items.1].into_iter().filter(|count| *count > 1);
+        let fewest = several.min().unwrap_or(1);
+        let squares = figures.each_ref().map(|figure| figure.se.map_or(0.0, |se| se * se));
+        let apart = squares[0] + squares[1];
+        let variance = if is_apart { apart } else { groups.parts(&all, 2).variance() };
+        let product = 2.0 * (squares[0] * squares[1]).sqrt();
+        let correlation = if product > 0.0 { ((apart - variance) / product).clamp(-1.0, 1.0) } else { 0.0 };
+        Self { figures, se: Some(variance.sqrt()).filter(|se| *se > 0.0), correlation, is_apart, fewest }
+    }
+
+    fn value(&self) -> f64 {
+        self.figures[0].value - self.figures[1].value
+    }
+
+    fn linear(&self, level: f64) -> Option<Interval> {
+        let half = self.se? * quantile::student(0.5 + level / 2.0, self.fewest - 1)?;
+        Some(around(self.value(), half))
+    }
+
+    /// The distances of the two figures from the ends of their intervals, taken together as their errors would be.
+    fn hybrid(&self) -> Option<Interval> {
+        let [first, second] = &self.figures;
+        let (of, other) = (first.interval?, second.interval?);
+        let together = |a: f64, b: f64| (a * a + b * b - 2.0 * self.correlation * a * b).max(0.0).sqrt();
+        let low = self.value() - together(first.value - of.low, other.high - second.value);
+        let high = self.value() + together(of.high - first.value, second.value - other.low);
+        Some(Interval { low: low.max(-1.0), high: high.min(1.0) })
+    }
+
+    /// The difference, which is called `together` if both figures are `each` and no person or item is in both.
+    fn difference(self, each: Method, together: Method, interval: Option<Interval>) -> Difference {
+        let is_simple = self.is_apart && self.figures.iter().all(|figure| figure.method == each);
+        let method = if is_simple { together } else { Method::Clustered };
+        let value = self.value();
+        let Self { figures: [first, second], se, correlation, .. } = self;
+        let method = if interval.is_some() { method } else { Method::None };
+        Difference { value, interval, se, method, correlation, first, second }
+    }
+}
+
+/// Whether persons (or items) are in both conditions; and how many there are: all together then, and otherwise those of the
+/// condition with fewer, because that one's error is known least.
+fn in_both<'a, P, I, T: Ord + 'a>(
+    first: &'a [Answer<P, I>],
+    second: &'a [Answer<P, I>],
+    figures: &[Figure; 2],
+    of: impl Fn(&'a Answer<P, I>) -> &'a T,
+    count: impl Fn(&Figure) -> usize,
+) -> (bool, usize) {
+    let all: BTreeSet<&T> = first.iter().chain(second).map(of).collect();
+    let [one, other] = figures.each_ref().map(count);
+    let is_shared = all.len() < one + other;
+    (is_shared, if is_shared { all.len() } else { one.min(other) })
+}

@@ -1,0 +1,163 @@
+//! Shares and means of answers by persons to items, and differences between two conditions.
+//!
+//! Where each person and each item occurs once, answers are independent. Otherwise the variance is clustered both ways
+//! (`variance.rs`). Shares get their interval on the logit scale by the delta method, so that it stays within 0 and 1.
+
+mod difference;
+mod variance;
+
+use super::{Answer, Interval, is_level, logit_normal, quantile, share::wilson};
+pub use difference::{Difference, mean_difference, share_difference};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+pub(super) use variance::{Groups, Parts};
+
+/// How an interval was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Wilson's interval of a share of independent answers.
+    Wilson,
+    /// Student's interval of a mean of independent answers.
+    Student,
+    /// The variance is clustered by persons and by items.
+    Clustered,
+    /// A share of 0 or 1 whose answers are not independent: Wilson's interval of as many answers as there are persons or
+    /// items, whichever are fewer.
+    Extreme,
+    /// Newcombe's interval of the difference between two shares of independent answers.
+    Newcombe,
+    /// There is no interval: nothing shows how far the figure can be trusted.
+    None,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Wilson => "Wilson",
+            Self::Student => "Student's t",
+            Self::Clustered => "clustered by persons and items",
+            Self::Extreme => "Wilson with as many answers as persons or items",
+            Self::Newcombe => "Newcombe",
+            Self::None => "no interval",
+        })
+    }
+}
+
+/// A share or a mean with its interval.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// The share or the mean.
+    pub value: f64,
+    /// Its interval, where one can be made.
+    pub interval: Option<Interval>,
+    /// Its standard error, where it is above 0.
+    pub se: Option<f64>,
+    /// How the interval was made.
+    pub method: Method,
+    /// How many answers.
+    pub answers: usize,
+    /// How many persons gave them.
+    pub persons: usize,
+    /// How many items they are about.
+    pub items: usize,
+}
+
+/// The share of answers that are 1, with its interval.
+///
+/// Values between 0 and 1 are taken too. `None` where there are no answers, a value is outside 0 to 1, or the level is not
+/// between 0 and 1.
+#[must_use]
+pub fn share<P: Ord, I: Ord>(answers: &[Answer<P, I>], level: f64) -> Option<Figure> {
+    let is_share = answers.iter().all(|answer| (0.0..=1.0).contains(&answer.value));
+    let sample = is_share.then(|| Sample::of(answers, level)).flatten()?;
+    Some(sample.share(level))
+}
+
+/// The mean of answers, with its interval.
+///
+/// `None` where there are no answers, a value is not finite, or the level is not between 0 and 1.
+#[must_use]
+pub fn mean<P: Ord, I: Ord>(answers: &[Answer<P, I>], level: f64) -> Option<Figure> {
+    Some(Sample::of(answers, level)?.mean(level))
+}
+
+/// Answers to one condition.
+struct Sample {
+    mean: f64,
+    answers: usize,
+    parts: Parts,
+}
+
+impl Sample {
+    fn of<P: Ord, I: Ord>(answers: &[Answer<P, I>], level: f64) -> Option<Self> {
+        let is_finite = answers.iter().all(|answer| answer.value.is_finite());
+        let mean = is_finite.then(|| average(answers)).flatten()?;
+        let groups = Groups::of(answers.iter().map(|answer| (&answer.person, &answer.item)));
+        let parts = groups.parts(&errors(answers, mean), 1);
+        is_level(level).then_some(Self { mean, answers: answers.len(), parts })
+    }
+
+    fn share(&self, level: f64) -> Figure {
+        let is_extreme = self.mean == 0.0 || self.mean == 1.0;
+        let (method, interval) = if self.parts.is_independent() {
+            (Method::Wilson, wilson(self.mean * self.answers as f64, self.answers as f64, level))
+        } else if is_extreme {
+            let fewest = self.parts.fewest() as f64;
+            (Method::Extreme, wilson(self.mean * fewest, fewest, level))
+        } else {
+            (Method::Clustered, self.on_logits(level))
+        };
+        self.figure(method, interval)
+    }
+
+    /// The interval on the logit scale: the derivative of the logit is 1 / (p (1 - p)).
+    fn on_logits(&self, level: f64) -> Option<Interval> {
+        let half = self.half(level)? / (self.mean * (1.0 - self.mean));
+        let centre = logit_normal::logit(self.mean);
+        Some(Interval { low: logit_normal::expit(centre - half), high: logit_normal::expit(centre + half) })
+    }
+
+    fn mean(&self, level: f64) -> Figure {
+        let method = if self.parts.is_independent() { Method::Student } else { Method::Clustered };
+        self.figure(method, self.half(level).map(|half| around(self.mean, half)))
+    }
+
+    /// Half the width of the interval on the scale of the values.
+    fn half(&self, level: f64) -> Option<f64> {
+        Some(self.se()? * quantile::student(0.5 + level / 2.0, self.parts.fewest() - 1)?)
+    }
+
+    fn se(&self) -> Option<f64> {
+        Some(self.parts.variance().sqrt()).filter(|se| *se > 0.0)
+    }
+
+    fn figure(&self, method: Method, interval: Option<Interval>) -> Figure {
+        Figure {
+            value: self.mean,
+            interval,
+            se: self.se(),
+            method: if interval.is_some() { method } else { Method::None },
+            answers: self.answers,
+            persons: self.parts.persons,
+            items: self.parts.items,
+        }
+    }
+}
+
+fn average<P, I>(answers: &[Answer<P, I>]) -> Option<f64> {
+    let sum: f64 = answers.iter().map(|answer| answer.value).sum();
+    (!answers.is_empty()).then(|| sum / answers.len() as f64)
+}
+
+/// What each answer contributes to the error of the mean.
+fn errors<P, I>(answers: &[Answer<P, I>], mean: f64) -> Vec<f64> {
+    answers.iter().map(|answer| (answer.value - mean) / answers.len() as f64).collect()
+}
+
+fn around(value: f64, half: f64) -> Interval {
+    Interval { low: value - half, high: value + half }
+}
+
+#[cfg(test)]
+mod tests;

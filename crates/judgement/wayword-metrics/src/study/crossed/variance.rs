@@ -1,0 +1,120 @@
+//! The variance of a figure whose answers go together by person and by item.
+//!
+//! Cameron, Gelbach and Miller (2011): V = V_person + V_item - V_cell, each from the sums of errors within its groups, times
+//! G / (G - 1) (n - 1) / (n - k) for G groups, n answers and k figures that were estimated together. This is what statsmodels'
+//! `cov_cluster_2groups` computes. The difference can be too small, even negative, so V is never below any of its three
+//! parts: answers of one person or to one item are not less alike than answers of different ones.
+
+use std::collections::BTreeMap;
+
+/// The groups of answers, by number.
+pub(in crate::study) struct Groups {
+    persons: Vec<usize>,
+    items: Vec<usize>,
+    cells: Vec<usize>,
+    counts: [usize; 3],
+}
+
+impl Groups {
+    pub(in crate::study) fn of<'a, P: Ord + 'a, I: Ord + 'a>(places: impl Iterator<Item = (&'a P, &'a I)>) -> Self {
+        let (persons, items): (Vec<&P>, Vec<&I>) = places.unzip();
+        let (persons, items) = (numbered(&persons), numbered(&items));
+        let both: Vec<(usize, usize)> = persons.iter().copied().zip(items.iter().copied()).collect();
+        let cells = numbered(&both);
+        let counts = [&persons, &items, &cells].map(|of| of.iter().max().map_or(0, |most| most + 1));
+        Self { persons, items, cells, counts }
+    }
+
+    /// The parts of the variance of a sum of errors; `estimated` figures were estimated together.
+    pub(in crate::study) fn parts(&self, errors: &[f64], estimated: usize) -> Parts {
+        let answers = errors.len();
+        let small = (answers.saturating_sub(1)) as f64 / (answers.saturating_sub(estimated)).max(1) as f64;
+        let part = |of: &[usize], count: usize| {
+            let mut sums = vec![0.0; count];
+            of.iter().zip(errors).for_each(|(group, error)| sums[*group] += error);
+            let square: f64 = sums.iter().map(|sum| sum * sum).sum();
+            if count > 1 { small * square * count as f64 / (count - 1) as f64 } else { 0.0 }
+        };
+        let [persons, items, cells] = self.counts;
+        Parts {
+            person: part(&self.persons, persons),
+            item: part(&self.items, items),
+            cell: part(&self.cells, cells),
+            answers,
+            persons,
+            items,
+        }
+    }
+}
+
+/// Numbers from 0 for what is the same.
+fn numbered<T: Ord>(all: &[T]) -> Vec<usize> {
+    let mut numbers: BTreeMap<&T, usize> = all.iter().map(|one| (one, 0)).collect();
+    numbers.values_mut().zip(0..).for_each(|(number, at)| *number = at);
+    all.iter().map(|one| numbers[one]).collect()
+}
+
+/// The parts of a variance, and the numbers of groups that they come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::study) struct Parts {
+    pub(in crate::study) person: f64,
+    pub(in crate::study) item: f64,
+    pub(in crate::study) cell: f64,
+    pub(in crate::study) answers: usize,
+    pub(in crate::study) persons: usize,
+    pub(in crate::study) items: usize,
+}
+
+impl Parts {
+    pub(in crate::study) fn variance(&self) -> f64 {
+        (self.person + self.item - self.cell).max(self.person).max(self.item).max(self.cell)
+    }
+
+    /// Whether no two answers share a person or an item. A single person or item is not a sample: then the figure is about
+    /// that one, and answers to it are independent.
+    pub(in crate::study) fn is_independent(&self) -> bool {
+        let is_free = |groups: usize| groups == self.answers || groups == 1;
+        is_free(self.persons) && is_free(self.items) && self.persons.max(self.items) == self.answers
+    }
+
+    /// The number of persons or items, whichever are fewer; a single one does not count beside the others.
+    pub(in crate::study) fn fewest(&self) -> usize {
+        let several = [self.persons, self.items].into_iter().filter(|groups| *groups > 1);
+        several.min().unwrap_or(1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(places: &[(u8, u8)], errors: &[f64]) -> Parts {
+        Groups::of(places.iter().map(|(person, item)| (person, item))).parts(errors, 1)
+    }
+
+    #[test]
+    fn sums_are_taken_within_persons_items_and_both() {
+        let found = parts(&[(7, 1), (7, 2), (9, 1), (9, 1)], &[1.0, 2.0, -1.0, -2.0]);
+        assert_eq!((found.persons, found.items, found.answers), (2, 2, 4));
+        assert_eq!(found.person, 2.0 * (9.0 + 9.0));
+        assert_eq!(found.item, 2.0 * (4.0 + 4.0));
+        assert_eq!(found.cell, 1.5 * (1.0 + 4.0 + 9.0));
+        assert_eq!(found.variance(), found.person);
+    }
+
+    #[test]
+    fn independent_answers_have_the_usual_variance_of_a_mean() {
+        let found = parts(&[(1, 1), (2, 2), (3, 3)], &[1.0 / 3.0, -1.0 / 3.0, 0.0]);
+        assert!(found.is_independent());
+        assert!((found.variance() - 1.0 / 3.0).abs() < 1e-15, "{found:?}");
+    }
+
+    #[test]
+    fn a_single_item_is_no_sample_of_items() {
+        let found = parts(&[(1, 5), (2, 5), (3, 5)], &[1.0, -1.0, 0.0]);
+        assert!(found.is_independent());
+        assert_eq!((found.item, found.fewest()), (0.0, 3));
+        assert!(!parts(&[(1, 5), (2, 5), (2, 6)], &[1.0, -1.0, 0.0]).is_independent());
+        assert_eq!(parts(&[(1, 1), (1, 1)], &[1.0, -1.0]).fewest(), 1);
+    }
+}

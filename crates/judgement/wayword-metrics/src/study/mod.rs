@@ -1,0 +1,45 @@
+//! The figures of a study with people: shares, means, agreement and preferences of persons over items, with intervals.
+//!
+//! Persons and items are both samples: a figure should hold for other persons and other items. So answers of one person are
+//! not independent, and neither are answers to one item.
+
+mod agreement;
+mod bradley_terry;
+mod crossed;
+mod logit_normal;
+mod power;
+mod quantile;
+mod share;
+
+pub use agreement::{Agreement, Ratings, Scale, agreement};
+pub use bradley_terry::{BradleyTerry, Comparison, NoStrength, Preference, Strength, Term, bradley_terry};
+pub use crossed::{Difference, Figure, Method, mean, mean_difference, share, share_difference};
+pub use logit_normal::mean_share;
+pub use power::{Detectable, Plan, detectable};
+use serde::{Deserialize, Serialize};
+pub use share::wilson;
+
+/// What one person gave for one item.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Answer<P, I> {
+    /// The person.
+    pub person: P,
+    /// The item.
+    pub item: I,
+    /// 0 or 1 for a share, any number for a mean, the level that was chosen for agreement.
+    pub value: f64,
+}
+
+/// The ends of an interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Whether a level is a share between 0 and 1.
+fn is_level(level: f64) -> bool {
+    level > 0.0 && level < 1.0
+}

@@ -1,0 +1,177 @@
+//! What a planned study can detect.
+
+use super::{logit_normal, mean_share, quantile};
+use serde::{Deserialize, Serialize};
+
+/// A planned study of two conditions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// All persons, those of both conditions together.
+    pub persons: usize,
+    /// Items, those of both conditions together where no item is in both.
+    pub items: usize,
+    /// How many answers each person gives, over both conditions.
+    pub answers_per_person: usize,
+    /// The mean of the two conditions' shares.
+    pub base_share: f64,
+    /// The standard deviation of persons on the logit scale.
+    pub person_sd: f64,
+    /// The standard deviation of items on the logit scale.
+    pub item_sd: f64,
+    /// Whether each person sees both conditions, with half of the answers each.
+    pub persons_see_both: bool,
+    /// Whether each item is in both conditions.
+    pub items_in_both: bool,
+}
+
+/// The smallest difference between two shares that a plan detects.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Detectable {
+    /// The difference.
+    pub difference: f64,
+    /// Answers in each condition.
+    pub answers_per_condition: f64,
+    /// By how much the variance exceeds that of independent answers; below 1 where what persons and items do cancels.
+    pub design_effect: f64,
+}
+
+/// The smallest difference that a plan detects with this power in a two-sided test at this significance.
+///
+/// For independent answers, n in each condition, it solves (Fleiss, Levin and Paik 2003, 4.14, without continuity)
+///
+/// ```text
+/// d = (z_significance √(2 m (1 - m)) + z_power √(p (1 - p) + q (1 - q))) / √n,   p, q = m ± d / 2
+/// ```
+///
+/// for shares whose mean is m. Otherwise n is divided by the design effect (Kish 1965)
+/// `1 + (a - 1) person + (b - 1) item`, where a and b are the answers of one person and to one item within a condition, and
+/// `person` and `item` the correlations of two answers of one person and to one item at that mean. What persons or items
+/// do to both conditions cancels from the difference, so there `a - 1` or `b - 1` becomes -1. `None` where no difference has
+/// that power, and for plans that cannot be.
+#[must_use]
+pub fn detectable(plan: &Plan, power: f64, significance: f64) -> Option<Detectable> {
+    let answers_per_condition = (plan.persons * plan.answers_per_person) as f64 / 2.0;
+    let is_inside = |share: f64| share > 0.0 && share < 1.0;
+    let is_sd = |sd: f64| (0.0..=MOST_SD).contains(&sd);
+    let can_be = [plan.base_share, power, significance].into_iter().all(is_inside)
+        && is_sd(plan.person_sd)
+        && is_sd(plan.item_sd)
+        && plan.items > 0
+        && answers_per_condition > 0.0;
+    let design_effect = can_be.then(|| design_effect(plan, answers_per_condition))?;
+    let z = [quantile::normal(1.0 - significance / 2.0), quantile::normal(power)];
+    let difference = smallest(plan.base_share, answers_per_condition / design_effect, z)?;
+    Some(Detectable { difference, answers_per_condition, design_effect })
+}
+
+/// Beyond this a person says nearly always the same.
+const MOST_SD: f64 = 10.0;
+
+fn design_effect(plan: &Plan, answers: f64) -> f64 {
+    let conditions = |in_both: bool| if in_both { 1.0 } else { 2.0 };
+    let per_person = answers * conditions(plan.persons_see_both) / plan.persons as f64;
+    let per_item = answers * conditions(plan.items_in_both) / plan.items as f64;
+    let [person, item] = correlations(plan);
+    let effect = |in_both: bool, of_one: f64| if in_both { -1.0 } else { (of_one - 1.0).max(0.0) };
+    1.0 + effect(plan.persons_see_both, per_person) * person + effect(plan.items_in_both, per_item) * item
+}
+
+/// The correlations of two answers of one person, and of two answers to one item.
+///
+/// Two answers share a part of their logit, with this part's variance; the rest differs. So their correlation is the
+/// variance, over that part, of the share that is expected given it, by p (1 - p).
+fn correlations(plan: &Plan) -> [f64; 2] {
+    let all = plan.person_sd.hypot(plan.item_sd);
+    let centre = logit_normal::centre(plan.base_share, all);
+    let total = plan.base_share * (1.0 - plan.base_share);
+    let of = |shared: f64, rest: f64| {
+        let square = logit_normal::over(centre, shared, |at| mean_share(at, rest).powi(2));
+        (square - plan.base_share * plan.base_share) / total
+    };
+    [of(plan.person_sd, plan.item_sd), of(plan.item_sd, plan.person_sd)]
+}
+
+/// Solves the formula for the difference, by bisection.
+fn smallest(mean: f64, answers: f64, [significance, power]: [f64; 2]) -> Option<f64> {
+    let variance = |share: f64| (share * (1.0 - share)).max(0.0);
+    let is_detected = |difference: f64| {
+        let apart = variance(mean + difference / 2.0) + variance(mean - difference / 2.0);
+        let needed = significance * (2.0 * variance(mean)).sqrt() + power * apart.sqrt();
+        difference * answers.sqrt() >= needed
+    };
+    let most = 2.0 * mean.min(1.0 - mean);
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..100 {
+        let middle = f64::midpoint(low, high);
+        if is_detected(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    is_detected(most).then_some(high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: Plan = Plan {
+        persons: 60,
+        items: 60,
+        answers_per_person: 1,
+        base_share: 0.5,
+        person_sd: 0.0,
+        item_sd: 0.0,
+        persons_see_both: false,
+        items_in_both: false,
+    };
+
+    fn found(plan: Plan) -> Detectable {
+        detectable(&plan, 0.8, 0.05).unwrap()
+    }
+
+    #[test]
+    fn thirty_persons_in_each_group_detect_about_35_points() {
+        let found = found(PLAN);
+        assert_eq!((found.answers_per_condition, found.design_effect), (30.0, 1.0));
+        assert_eq!(format!("{:.3}", found.difference), "0.355");
+    }
+
+    /// The size that detects 0.6 against 0.7 by Fleiss's formula is 356 (Fleiss, Levin and Paik 2003).
+    #[test]
+    fn a_known_size_detects_its_difference() {
+        let found = found(Plan { persons: 2 * 356, items: 2 * 356, base_share: 0.65, ..PLAN });
+        assert!((found.difference - 0.1).abs() < 1e-4, "{found:?}");
+    }
+
+    #[test]
+    fn one_person_each_with_one_item_each_is_independent_whatever_they_are_like() {
+        let found = found(Plan { person_sd: 1.5, item_sd: 1.0, ..PLAN });
+        assert_eq!(found.design_effect, 1.0);
+    }
+
+    #[test]
+    fn clusters_cost_and_conditions_within_persons_gain() {
+        let several = Plan { persons: 30, answers_per_person: 10, person_sd: 1.0, item_sd: 1.0, ..PLAN };
+        let within = Plan { persons_see_both: true, items_in_both: true, ..several };
+        let free = Plan { person_sd: 0.0, item_sd: 0.0, ..several };
+        let [several, within, free] = [several, within, free].map(found);
+        assert!(several.design_effect > 2.0, "{several:?}");
+        assert!(within.design_effect < 1.0, "{within:?}");
+        assert!(within.difference < free.difference && free.difference < several.difference);
+    }
+
+    #[test]
+    fn plans_that_cannot_be_detect_nothing() {
+        for plan in [
+            Plan { persons: 0, ..PLAN },
+            Plan { items: 0, ..PLAN },
+            Plan { base_share: 1.0, ..PLAN },
+            Plan { person_sd: f64::NAN, ..PLAN },
+            Plan { persons: 2, ..PLAN },
+        ] {
+            assert_eq!(detectable(&plan, 0.8, 0.05), None);
+        }
+    }
+}
