@@ -1,0 +1,8 @@
+//! What results must be, whatever people gave.
+
+mod exports;
+mod figures;
+mod hostile;
+mod look;
+mod made;
+mod reader;
