@@ -30,18 +30,31 @@ pub struct Estimate {
 /// not drawn. `None` where there are no values.
 #[must_use]
 pub fn clustered_interval<C: Ord>(values: &[(C, f64)], resamples: usize, level: f64, seed: u64) -> Option<Estimate> {
+    let mut rng = rng(seed, &["bootstrap"]);
+    let draw = move |clusters: usize| (0..clusters).map(|_| rng.random_range(0..clusters)).collect();
+    clustered_interval_of(values, resamples.clamp(1, MOST_RESAMPLES), level, draw)
+}
+
+/// As [`clustered_interval`], over resamples that the caller draws: `draw` is given the number of clusters, and returns the
+/// numbers of those that it draws, in the order of the clusters. A number that no cluster has is left out.
+#[must_use]
+pub fn clustered_interval_of<C: Ord>(
+    values: &[(C, f64)],
+    resamples: usize,
+    level: f64,
+    mut draw: impl FnMut(usize) -> Vec<usize>,
+) -> Option<Estimate> {
     let mut clusters: BTreeMap<&C, Sum> = BTreeMap::new();
     for (cluster, value) in values {
         clusters.entry(cluster).or_default().add(Sum { total: *value, count: 1 });
     }
     let clusters: Vec<Sum> = clusters.into_values().collect();
     let all = clusters.iter().copied().reduce(Sum::plus)?;
-    let mut rng = rng(seed, &["bootstrap"]);
-    let mut draw = || {
-        let drawn = (0..clusters.len()).map(|_| clusters[rng.random_range(0..clusters.len())]);
+    let mut mean = || {
+        let drawn = draw(clusters.len()).into_iter().filter_map(|at| clusters.get(at).copied());
         drawn.reduce(Sum::plus).unwrap_or(all).mean()
     };
-    let mut means: Vec<f64> = (0..resamples.clamp(1, MOST_RESAMPLES)).map(|_| draw()).collect();
+    let mut means: Vec<f64> = (0..resamples.max(1)).map(|_| mean()).collect();
     means.sort_unstable_by(f64::total_cmp);
     let tail = (1.0 - level.clamp(0.0, 1.0)) / 2.0;
     Some(Estimate {
@@ -74,7 +87,7 @@ impl Sum {
 }
 
 /// A quantile of sorted values, interpolated where it falls between two.
-pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let below = sorted[at.floor() as usize];
     below + (sorted[at.ceil() as usize] - below) * at.fract()

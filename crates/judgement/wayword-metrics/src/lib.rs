@@ -11,13 +11,13 @@ mod study;
 mod trajectory;
 mod words;
 
-pub use bootstrap::{Estimate, clustered_interval};
+pub use bootstrap::{Estimate, clustered_interval, clustered_interval_of};
 pub use mcnemar::McNemar;
 pub use similarity::{Drawing, Said, Similarity, similarity};
 pub use study::{
     Agreement, Answer, BradleyTerry, Comparison, Detectable, Difference, Figure, Interval, Method, NoStrength, Plan,
-    Preference, Ratings, Scale, Strength, Term, agreement, bradley_terry, detectable, mean, mean_difference,
-    mean_share, share, share_difference, wilson,
+    Preference, Scale, Strength, Term, agreement, bradley_terry, detectable, mean, mean_difference, mean_share, share,
+    share_difference, wilson,
 };
 pub use trajectory::{
     Atlas, Demand, Distances, Grounding, Invalid, Metric, Outcome, Rule, Score, Trajectory, problems, score,

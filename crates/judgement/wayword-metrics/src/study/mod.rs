@@ -11,7 +11,7 @@ mod power;
 mod quantile;
 mod share;
 
-pub use agreement::{Agreement, Ratings, Scale, agreement};
+pub use agreement::{Agreement, Scale, agreement};
 pub use bradley_terry::{BradleyTerry, Comparison, NoStrength, Preference, Strength, Term, bradley_terry};
 pub use crossed::{Difference, Figure, Method, mean, mean_difference, share, share_difference};
 pub use logit_normal::mean_share;

@@ -8,7 +8,6 @@ use wayword_metrics::{
 };
 
 const LEVEL: f64 = 0.95;
-const RESAMPLES: usize = 500;
 /// The share of a person's or item's variance that both conditions have in common.
 const IN_COMMON: f64 = 0.5;
 /// How much lower the second condition's logits are.
@@ -65,7 +64,7 @@ impl Figure {
             }
             Self::Alpha => {
                 let given = rated(&slots, sd, rng);
-                agreement(&given, Scale::Ordinal, LEVEL, RESAMPLES, rng.random()).and_then(|of| of.interval).into_iter().collect()
+                agreement(&given, Scale::Ordinal, LEVEL).and_then(|of| of.interval).into_iter().collect()
             }
             Self::Strengths => chosen(&slots, sd, rng),
         }

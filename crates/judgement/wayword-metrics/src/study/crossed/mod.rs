@@ -145,9 +145,11 @@ impl Sample {
     }
 }
 
+/// The mean of answers. Where all are the same it is that value, which a sum could miss by rounding.
 fn average<P, I>(answers: &[Answer<P, I>]) -> Option<f64> {
-    let sum: f64 = answers.iter().map(|answer| answer.value).sum();
-    (!answers.is_empty()).then(|| sum / answers.len() as f64)
+    let first = answers.first()?.value;
+    let above: f64 = answers.iter().map(|answer| answer.value - first).sum();
+    Some(first + above / answers.len() as f64)
 }
 
 /// What each answer contributes to the error of the mean.

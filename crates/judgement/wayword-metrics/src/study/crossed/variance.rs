@@ -2,10 +2,13 @@
 //!
 //! Cameron, Gelbach and Miller (2011): V = V_person + V_item - V_cell, each from the sums of errors within its groups, times
 //! G / (G - 1) (n - 1) / (n - k) for G groups, n answers and k figures that were estimated together. This is what statsmodels'
-//! `cov_cluster_2groups` computes. The difference can be too small, even negative, so V is never below any of its three
-//! parts: answers of one person or to one item are not less alike than answers of different ones.
+//! `cov_cluster_2groups` computes. The sum can be too small, even negative, so V is never below the larger of `V_person` and
+//! `V_item`.
 
 use std::collections::BTreeMap;
+
+/// Sums of errors below this share of the errors are rounding.
+const BALANCED: f64 = 1e-20;
 
 /// The groups of answers, by number.
 pub(in crate::study) struct Groups {
@@ -66,8 +69,10 @@ pub(in crate::study) struct Parts {
 }
 
 impl Parts {
+    /// The variance. Where answers happen to balance within every person and every item, only single answers show any.
     pub(in crate::study) fn variance(&self) -> f64 {
-        (self.person + self.item - self.cell).max(self.person).max(self.item).max(self.cell)
+        let larger = self.person.max(self.item);
+        if larger <= BALANCED * self.cell { self.cell } else { larger.max(self.person + self.item - self.cell) }
     }
 
     /// Whether no two answers share a person or an item. A single person or item is not a sample: then the figure is about
@@ -100,6 +105,13 @@ mod tests {
         assert_eq!(found.item, 2.0 * (4.0 + 4.0));
         assert_eq!(found.cell, 1.5 * (1.0 + 4.0 + 9.0));
         assert_eq!(found.variance(), found.person);
+    }
+
+    #[test]
+    fn answers_that_balance_everywhere_have_the_variance_of_single_ones() {
+        let found = parts(&[(1, 1), (1, 2), (2, 1), (2, 2)], &[1.0, -1.0, -1.0, 1.0]);
+        assert_eq!((found.person, found.item, found.cell), (0.0, 0.0, 16.0 / 3.0));
+        assert_eq!(found.variance(), found.cell);
     }
 
     #[test]
