@@ -13,6 +13,9 @@ use wayword_metrics::{Interval, Method};
 /// How many figures stand side by side: as many as fit a page with their intervals.
 const ACROSS: usize = 3;
 
+/// With more columns of text than this, their lines break.
+const MOST_WHOLE: usize = 3;
+
 /// The results as LaTeX tables; they need the package `booktabs`.
 pub(super) fn latex(results: &Results) -> String {
     let mut page = String::from("% \\usepackage{booktabs}\n");
@@ -23,7 +26,7 @@ pub(super) fn latex(results: &Results) -> String {
             differences(&mut page, results, version, measures);
         }
         let all = tables::of_the_paper(results, version).into_iter().chain(tables::pairs(version));
-        for one in all.chain(tables::levels(results, version)).chain([tables::agreement(version)]) {
+        for one in all.chain(tables::levels(results, version, false)).chain([tables::agreement(version)]) {
             table(&mut page, &one, Some(version.rule));
         }
     }
@@ -105,7 +108,11 @@ fn compact(
 }
 
 fn table(page: &mut String, table: &Table, rule: Option<&str>) {
-    let columns: String = table.heads.iter().map(|head| if head.is_number { 'r' } else { 'l' }).collect();
+    if table.rows.is_empty() {
+        return;
+    }
+    let texts = table.heads.iter().filter(|head| !head.is_number).count();
+    let columns: String = table.heads.iter().map(|head| column(head.is_number, texts)).collect();
     let heads: Vec<String> = table.heads.iter().map(|head| escaped(&head.text)).collect();
     add(page, format_args!("\n\\begin{{table}}\n\\centering\\small\n\\begin{{tabular}}{{{columns}}}\n\\toprule\n"));
     add(page, format_args!("{} \\\\\n\\midrule\n", heads.join(" & ")));
@@ -117,6 +124,15 @@ fn table(page: &mut String, table: &Table, rule: Option<&str>) {
     let caption: Vec<String> = std::iter::once(format!("{}.", table.title)).chain(notes.map(str::to_owned)).collect();
     let caption = escaped(&caption.join(" "));
     add(page, format_args!("\\bottomrule\n\\end{{tabular}}\n\\caption{{{caption}}}\n\\end{{table}}\n"));
+}
+
+/// A column; where many hold text, their lines break.
+fn column(is_number: bool, texts: usize) -> String {
+    match texts {
+        _ if is_number => "r".to_owned(),
+        0..=MOST_WHOLE => "l".to_owned(),
+        _ => format!("p{{{:.2}\\linewidth}}", 0.8 / texts as f64),
+    }
 }
 
 fn add(page: &mut String, text: std::fmt::Arguments<'_>) {

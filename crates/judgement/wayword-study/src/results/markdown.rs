@@ -25,7 +25,7 @@ pub(super) fn markdown(results: &Results, sheets: &[Sheet]) -> String {
         for one in all.chain(tables::differences(results, version)) {
             table(&mut page, 3, &one);
         }
-        for one in tables::levels(results, version).iter().chain([&tables::agreement(version)]) {
+        for one in tables::levels(results, version, true).iter().chain([&tables::agreement(version)]) {
             table(&mut page, 3, one);
         }
     }

@@ -1,7 +1,6 @@
 //! What a study says: figures with intervals, agreement, who took part, and the files that show it.
 //!
-//! Everything is made from [`Data`] alone, without randomness beyond the study's seed, so that the same answers give the same
-//! files. No text of a participant is in a table or on a page; they are in `answers.csv` only.
+//! Everything is made from [`Data`] alone, so that the same answers give the same files. No text of a participant is in a table or on a page; they are in `answers.csv` only.
 
 mod given;
 mod inert;
@@ -10,6 +9,7 @@ mod markdown;
 mod measure;
 mod names;
 mod notes;
+mod outlook;
 mod page;
 mod pairs;
 mod people;
@@ -23,6 +23,7 @@ mod words;
 mod write;
 
 pub use measure::{Measure, MeasureKind, Unit};
+pub use outlook::{Found, Outlook, Planned};
 pub use pairs::{PairRow, Pairs, Strengths};
 pub use people::{Attention, Failed, Handed, People};
 pub use version::{Agreed, Less, Row, Version};
@@ -34,8 +35,6 @@ use serde::Serialize;
 use sheet::Sheet;
 use sheets::Sources;
 
-/// How often the interval of an agreement is drawn.
-const RESAMPLES: usize = 1000;
 /// How often an interval holds what it is about.
 const LEVEL: f64 = 0.95;
 

@@ -37,7 +37,7 @@ struct FileView {
 
 impl VersionView {
     fn new(results: &Results, version: &Version) -> Self {
-        let levels = tables::levels(results, version);
+        let levels = tables::levels(results, version, true);
         let folded =
             [tables::figures(results, version)].into_iter().chain(tables::differences(results, version)).chain(levels);
         Self {

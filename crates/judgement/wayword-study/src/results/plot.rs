@@ -116,10 +116,10 @@ pub(super) fn forests(results: &Results, version: &Version) -> Vec<Forest> {
             let shown = shown(measure, figure.value, figure.interval.as_ref());
             let label = tables::title(&row.condition, row.kind);
             let counts = format!(
-                "{} answers, {} persons, {} routes; {}",
-                figure.answers,
-                figure.persons,
-                figure.items,
+                "{}, {}, {}; {}",
+                words::count(figure.answers, "answer", "answers"),
+                words::count(figure.persons, "person", "persons"),
+                words::count(figure.items, "route", "routes"),
                 words::method(figure.method)
             );
             ForestRow {

@@ -161,11 +161,11 @@ pub(super) fn of_the_paper(results: &Results, version: &Version) -> Option<Table
     Some(table)
 }
 
-/// How often each level was chosen.
-pub(super) fn levels(results: &Results, version: &Version) -> Vec<Table> {
+/// How often each level was chosen. The heads of the columns have the words of the levels, or their numbers alone.
+pub(super) fn levels(results: &Results, version: &Version, in_words: bool) -> Vec<Table> {
+    let head = |level: u8, word: &str| if in_words { format!("{level} {word}") } else { level.to_string() };
     let table = |scale: &crate::wording::Scale| {
-        let heads: Vec<String> =
-            (1..).zip(scale.levels).map(|(level, word): (u8, &str)| format!("{level} {word}")).collect();
+        let heads: Vec<String> = (1..).zip(scale.levels).map(|(level, word): (u8, &str)| head(level, word)).collect();
         let heads: Vec<&str> =
             ["Condition"].into_iter().chain(heads.iter().map(String::as_str)).chain(["Answers"]).collect();
         let mut table = Table::new(format!("{}: {}", scale.name, scale.text), &heads, 1);
@@ -289,7 +289,8 @@ pub(super) fn agreement(version: &Version) -> Table {
         table.add(false, std::iter::once(label.to_owned()).chain(cells));
     }
     table.notes.push(
-        "1: those who judged the same item always agree; 0: as often as by chance. Answers that nobody else gave to the same item \
+        "1: those who judged the same item always agree; 0: as often as by chance. The interval is a jackknife's over persons and \
+         items. Answers that nobody else gave to the same item \
          do not count; an item is a text, so conditions are apart. No value: no item has two answers, or all are the same."
             .to_owned(),
     );

@@ -1,7 +1,7 @@
 //! The figures by one rule of whose answers count.
 
 use super::{
-    LEVEL, RESAMPLES,
+    LEVEL,
     given::{Answered, Given, Whose},
     measure::{Measure, MeasureKind},
     pairs::Pairs,
@@ -186,7 +186,7 @@ fn cut(interval: &Interval, low: Option<f64>, high: Option<f64>) -> Interval {
 
 /// Agreement of those who judged the same item: by levels, or by the choice between its texts.
 fn agreed(data: &Data, taken: &[&Answered<'_>], scales: &'static [Scale]) -> Vec<Agreed> {
-    let alpha = |values: &[Answer<usize, u32>], scale| agreement(values, scale, LEVEL, RESAMPLES, data.plan.seed);
+    let alpha = |values: &[Answer<usize, u32>], scale| agreement(values, scale, LEVEL);
     if data.plan.mode == Mode::Pair {
         let values: Vec<Answer<usize, u32>> = taken.iter().filter_map(|one| choice(one)).collect();
         return vec![Agreed { name: CHOICE, alpha: alpha(&values, wayword_metrics::Scale::Nominal) }];

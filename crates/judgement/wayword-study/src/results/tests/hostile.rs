@@ -82,12 +82,13 @@ fn names_are_inert_in_every_file() {
                 for tag in ["<script", "<img", "</title><img", "</style></"] {
                     assert!(!file.contains(tag), "{name}: {tag} of {text:?}");
                 }
-                assert!(!file.contains("](javascript"), "{name}");
+                assert!(name.ends_with(".html") || !file.replace("\\]", "").contains("](javascript"), "{name}");
             }
             if name.ends_with(".tex") {
                 for command in ["\\input", "\\write"] {
                     assert!(!file.contains(command), "{name}: {command}");
                 }
+                latex_is_whole(&file);
             }
             if name.ends_with(".csv") {
                 let rows = read(&file);
@@ -114,6 +115,25 @@ fn tables_are_whole(markdown: &str) {
             }
         };
     }
+}
+
+/// Every row of a LaTeX table has as many cells as the table has columns, groups are closed, and no line runs into a comment.
+fn latex_is_whole(latex: &str) {
+    let mut columns = 0;
+    let mut depth = 0i32;
+    for line in latex.lines().filter(|line| !line.starts_with('%')) {
+        let plain = line.replace("\\\\", "").replace("\\&", "").replace("\\%", "").replace("\\{", "").replace("\\}", "");
+        depth += plain.matches('{').count() as i32 - plain.matches('}').count() as i32;
+        assert!(!plain.contains('%'), "{line}");
+        if let Some((_, format)) = line.split_once("\\begin{tabular}") {
+            let format = format.replace("\\linewidth", "");
+            columns = format.matches(['l', 'r', 'p']).count();
+        } else if line.ends_with("\\\\") {
+            assert_eq!(plain.matches('&').count() + 1, columns, "{line}");
+        }
+    }
+    assert_eq!(depth, 0);
+    assert_eq!(latex.matches("\\begin{").count(), latex.matches("\\end{").count());
 }
 
 #[test]

@@ -5,4 +5,5 @@ mod figures;
 mod hostile;
 mod look;
 mod made;
+mod planned;
 mod reader;
