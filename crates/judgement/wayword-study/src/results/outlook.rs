@@ -1,6 +1,10 @@
 //! What a planned study asks for, and what it can find.
 
-use super::{inert, sheets::kind_name, words::{count, number}};
+use super::{
+    inert,
+    sheets::kind_name,
+    words::{count, number},
+};
 use crate::{Item, Kind, Mode, Plan, Settings};
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
@@ -171,7 +175,12 @@ impl fmt::Display for Outlook {
             writeln!(f, "  {:<11} {}{kind}", planned.items, inert::name(&planned.condition))?;
         }
         writeln!(f, "answers       {}: {} of each item", self.answers, self.per_item)?;
-        writeln!(f, "participants  {}, if all finish: {} each", self.participants, count(self.per_participant, "item", "items"))?;
+        writeln!(
+            f,
+            "participants  {}, if all finish: {} each",
+            self.participants,
+            count(self.per_participant, "item", "items")
+        )?;
         writeln!(f, "minutes each  {}", self.minutes)?;
         let what = match self.mode {
             Mode::Pair => "share of two compared conditions, in points from an even split",
@@ -188,7 +197,10 @@ impl fmt::Display for Outlook {
             writeln!(f, "  {points:<5} {words}")?;
         }
         if self.mode != Mode::Pair {
-            writeln!(f, "What a person or a route does to both conditions alike cancels; where it does not, the study finds less.")?;
+            writeln!(
+                f,
+                "What a person or a route does to both conditions alike cancels; where it does not, the study finds less."
+            )?;
         }
         if self.conditions.iter().all(|planned| planned.kind == Kind::Run) && self.mode != Mode::Pair {
             writeln!(

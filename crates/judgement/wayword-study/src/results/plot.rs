@@ -231,7 +231,7 @@ struct Part {
 }
 
 /// A bar below this width, in per cent, has no number on it.
-const ROOM: f64 = 7.0;
+const ROOM: f64 = 10.0;
 
 fn parts(counts: &[usize]) -> Vec<Part> {
     let all: usize = counts.iter().sum();

@@ -9,6 +9,7 @@ use super::{
     walks::Walks,
 };
 use crate::{Answer, Choice, Data, Kind, Mode, Participant, SlotState, Status, wording::Scale};
+use std::collections::BTreeMap;
 
 /// What all files are made from.
 pub(super) struct Sources<'a> {
@@ -167,14 +168,18 @@ impl Sources<'_> {
         let mut sheet = Sheet::new("submissions.csv", "a participant who consented and was not forgotten", columns);
         let mut people: Vec<&Participant> = self.data.participants.iter().collect();
         people.sort_by_key(|person| self.names.of(&person.id));
-        sheet.rows = people.into_iter().map(|person| self.submission(person)).collect();
+        let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        for slot in self.data.slots.iter().filter(|slot| slot.position.is_some()) {
+            let (given, answered) = counts.entry(&slot.participant).or_default();
+            *given += 1;
+            *answered += usize::from(slot.state == SlotState::Answered);
+        }
+        let of = |person: &Participant| counts.get(person.id.as_str()).copied().unwrap_or_default();
+        sheet.rows = people.into_iter().map(|person| self.submission(person, of(person))).collect();
         sheet
     }
 
-    fn submission(&self, person: &Participant) -> Vec<Cell> {
-        let own = self.data.slots.iter().filter(|slot| slot.position.is_some() && slot.participant == person.id);
-        let (given, done) =
-            own.fold((0, 0), |(given, done), slot| (given + 1, done + usize::from(slot.state == SlotState::Answered)));
+    fn submission(&self, person: &Participant, (given, done): (usize, usize)) -> Vec<Cell> {
         let failed: Vec<String> =
             person.attention.iter().filter(|check| !check.passed).map(|check| (check.number + 1).to_string()).collect();
         let since = |at_ms| Cell::Number(seconds(person.consented_ms, at_ms), 3);

@@ -68,7 +68,8 @@ pub(super) fn meaning(method: Method) -> &'static str {
         Method::Student => "Student's t; every person and every route occurs once",
         Method::Clustered => {
             "from the variance clustered by persons and by routes, V(persons) + V(routes) − V(cells), never below the larger of the \
-             first two, with Student's t of the fewer of persons and routes, less one; of a share on the logit scale"
+             first two, with Student's t of the fewer of persons and routes, less one; of a share on the logit scale; of a difference from \
+             both intervals and the correlation through shared persons and routes"
         }
         Method::Extreme => {
             "a share of 0 or 100 % of answers that depend on each other: Wilson's interval of as many answers as there are persons or \

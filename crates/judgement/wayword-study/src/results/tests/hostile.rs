@@ -122,7 +122,8 @@ fn latex_is_whole(latex: &str) {
     let mut columns = 0;
     let mut depth = 0i32;
     for line in latex.lines().filter(|line| !line.starts_with('%')) {
-        let plain = line.replace("\\\\", "").replace("\\&", "").replace("\\%", "").replace("\\{", "").replace("\\}", "");
+        let plain =
+            line.replace("\\\\", "").replace("\\&", "").replace("\\%", "").replace("\\{", "").replace("\\}", "");
         depth += plain.matches('{').count() as i32 - plain.matches('}').count() as i32;
         assert!(!plain.contains('%'), "{line}");
         if let Some((_, format)) = line.split_once("\\begin{tabular}") {
