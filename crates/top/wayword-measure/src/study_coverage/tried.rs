@@ -77,7 +77,8 @@ pub(super) fn rows(cells: &[Cell]) -> Vec<Vec<String>> {
 
 fn shown(cell: &Cell) -> String {
     let Some(percent) = cell.percent() else { return "-".to_owned() };
-    let given = 100.0 * cell.given as f64 / cell.wanted as f64;
+    // Rounded down, so that 100 is all.
+    let given = (1000 * cell.given / cell.wanted.max(1)) as f64 / 10.0;
     if cell.given == cell.wanted { format!("{percent:.1}") } else { format!("{percent:.1} ({given:.1})") }
 }
 
