@@ -47,8 +47,8 @@ struct Study {
 impl Study {
     fn draw(n: u64) -> (Self, Lcg) {
         let mut g = Lcg::new(n);
-        let is_apart = n % 5 == 0;
-        let tie = if n % 2 == 0 { 0.0 } else { 0.2 };
+        let is_apart = n.is_multiple_of(5);
+        let tie = if n.is_multiple_of(2) { 0.0 } else { 0.2 };
         let persons = 6 + g.below(30);
         let items = if is_apart { persons + g.below(5) } else { 5 + g.below(40) };
         let each = if is_apart { 1 } else { 1 + g.below(items.min(8)) };
@@ -56,12 +56,12 @@ impl Study {
         let of_persons: Vec<f64> = (0..persons).map(|_| g.next()).collect();
         let of_items: Vec<f64> = (0..items).map(|_| g.next()).collect();
         let mut study = Self::default();
-        for person in 0..persons {
+        for (person, of_person) in of_persons.iter().enumerate() {
             let start = if is_apart { person } else { g.below(items) };
             for at in 0..each {
                 let item = (start + at) % items;
                 let is_second = g.next() < 0.5;
-                let felt = (of_persons[person] + of_items[item]) / 2.0;
+                let felt = (of_person + of_items[item]) / 2.0;
                 let is_success = g.next() < 0.15 + 0.7 * felt - if is_second { 0.1 } else { 0.0 };
                 let value = if is_success { 0.5 + 0.5 * g.next() } else { 0.0 };
                 let level = (5.0 * (0.6 * felt + 0.4 * g.next())).floor();

@@ -28,6 +28,7 @@ mod share;
 mod skeleton;
 mod stage;
 mod storm;
+mod study_coverage;
 mod sweep;
 mod tell_apart;
 mod texts;
@@ -200,6 +201,8 @@ enum What {
     TellApart(tell_apart::Flags),
     /// Hold texts about generated houses against their plans: the room at the end, what stands there, the target.
     Houses(texts::houses::Flags),
+    /// Simulate studies with people, and count how often the intervals of their figures cover the truth.
+    StudyCoverage(study_coverage::Flags),
     /// Measure generated texts: bare turns, lengths, word types, openers, and what they share with other texts.
     Texts(texts::Flags),
 }
@@ -212,6 +215,7 @@ fn main() -> ExitCode {
         What::TellApart(flags) => flags.json,
         What::Texts(flags) => flags.json,
         What::Houses(flags) => flags.json,
+        What::StudyCoverage(flags) => flags.json,
         _ => false,
     };
     let output = Output::new(is_json, false);
@@ -227,6 +231,7 @@ fn main() -> ExitCode {
 fn run(what: What, output: &Output) -> Result<(), Error> {
     match what {
         What::Corruptions { runs, count, seed, show } => corruptions::measure(&runs, count, seed, show, output),
+        What::StudyCoverage(flags) => study_coverage::measure(&flags, output),
         What::FitFollower(flags) => fit_follower::measure(&flags, output),
         What::Coverage(flags) => coverage::measure(&flags, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),

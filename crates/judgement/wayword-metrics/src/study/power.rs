@@ -115,6 +115,7 @@ fn smallest(mean: f64, answers: f64, [significance, power]: [f64; 2]) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::Rng;
 
     const PLAN: Plan = Plan {
         persons: 60,
@@ -160,6 +161,53 @@ mod tests {
         assert!(several.design_effect > 2.0, "{several:?}");
         assert!(within.design_effect < 1.0, "{within:?}");
         assert!(within.difference < free.difference && free.difference < several.difference);
+    }
+
+    /// The variance of a difference between equal shares, over simulated studies: the plan's persons in order, items in turns.
+    fn simulated_variance(plan: Plan) -> f64 {
+        const STUDIES: u32 = 2000;
+        let mut rng = wayword_core::rng(1, &["power"]);
+        let centre = logit_normal::centre(plan.base_share, plan.person_sd.hypot(plan.item_sd));
+        let one = |_| {
+            let mut normals = |count, sd: f64| -> Vec<f64> {
+                (0..count).map(|_| sd * quantile::normal(rng.random_range(1e-12..1.0))).collect()
+            };
+            let (persons, items) = (normals(plan.persons, plan.person_sd), normals(plan.items, plan.item_sd));
+            let mut ones = [0.0; 2];
+            for n in 0..plan.persons * plan.answers_per_person {
+                let (person, at) = (n / plan.answers_per_person, n % plan.answers_per_person);
+                let second = usize::from(if plan.persons_see_both { at % 2 == 1 } else { person % 2 == 1 });
+                let half = plan.items / 2;
+                let before = if plan.persons_see_both { n / 2 } else { person / 2 * plan.answers_per_person + at };
+                let turn = 7 * before;
+                let item = if plan.items_in_both { turn % plan.items } else { turn % half + second * half };
+                let share = logit_normal::expit(centre + persons[person] + items[item]);
+                ones[second] += f64::from(u8::from(rng.random::<f64>() < share));
+            }
+            let answers = (plan.persons * plan.answers_per_person) as f64 / 2.0;
+            ((ones[0] - ones[1]) / answers).powi(2)
+        };
+        (0..STUDIES).map(one).sum::<f64>() / f64::from(STUDIES)
+    }
+
+    #[test]
+    fn the_design_effect_is_that_of_simulated_studies() {
+        let plan = Plan {
+            persons: 30,
+            items: 60,
+            answers_per_person: 10,
+            person_sd: 1.0,
+            item_sd: 1.0,
+            base_share: 0.7,
+            ..PLAN
+        };
+        for (persons_see_both, items_in_both) in [(false, false), (false, true), (true, false)] {
+            let plan = Plan { persons_see_both, items_in_both, ..plan };
+            let Detectable { design_effect, answers_per_condition, .. } = found(plan);
+            let independent = 2.0 * plan.base_share * (1.0 - plan.base_share) / answers_per_condition;
+            let simulated = simulated_variance(plan) / independent;
+            assert!((simulated / design_effect - 1.0).abs() < 0.12, "{plan:?}: {simulated} for {design_effect}");
+        }
     }
 
     #[test]

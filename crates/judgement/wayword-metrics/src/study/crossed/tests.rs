@@ -92,7 +92,7 @@ fn independent_shares_differ_by_newcombes_interval() {
 #[test]
 fn what_a_person_does_to_both_conditions_cancels() {
     let of = |shift: u32, from: u32| -> Vec<Answer<u32, u32>> {
-        let value = |n: u32| f64::from(u8::from((n / 10) % 2 == 0 || n % 7 == shift));
+        let value = |n: u32| f64::from(u8::from((n / 10).is_multiple_of(2) || n % 7 == shift));
         (0..300).map(|n| Answer { person: from + n / 10, item: n % 60, value: value(n) }).collect()
     };
     let same = share_difference(&of(1, 0), &of(2, 0), 0.95).unwrap();

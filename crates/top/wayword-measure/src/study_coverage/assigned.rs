@@ -1,7 +1,8 @@
-//! Simulated people and items: who answers what, and how persons and items differ.
+//! Who answers what in a simulated study, and how much persons and items differ.
 
 use rand::{Rng, seq::SliceRandom};
 use serde::Serialize;
+use std::fmt;
 
 /// Items of a simulated study.
 pub(super) const ITEMS: usize = 60;
@@ -11,6 +12,12 @@ pub(super) const ITEMS: usize = 60;
 pub(super) struct Design {
     pub(super) persons: usize,
     pub(super) each: usize,
+}
+
+impl fmt::Display for Design {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} x {}", self.persons, self.each)
+    }
 }
 
 /// How much persons differ, and items as well.
@@ -52,8 +59,8 @@ pub(super) struct Slot {
     pub(super) is_second: bool,
 }
 
-/// Who answers what. As a study assigns them: each person gets the items with the fewest answers, at random among those, never one
-/// twice; half of a person's and about half of an item's answers are about the second condition.
+/// Who answers what, as a study assigns it: each person gets the items with the fewest answers, at random among those, never
+/// one twice; half of a person's and about half of an item's answers are about the second condition.
 pub(super) fn assigned(design: Design, rng: &mut impl Rng) -> Vec<Slot> {
     let mut filled = [0_usize; ITEMS];
     let mut seconds = [0_usize; ITEMS];
@@ -63,7 +70,8 @@ pub(super) fn assigned(design: Design, rng: &mut impl Rng) -> Vec<Slot> {
         items.shuffle(rng);
         items.sort_by_key(|item| filled[*item]);
         items.truncate(design.each);
-        // The items whose answers are least about the second condition get it; persons with an odd number take turns.
+        // The items with the fewest answers about the second condition get one. Who gives an odd number of answers gives
+        // one more about the first condition or about the second, in turns.
         items.sort_by_key(|item| 2 * seconds[*item] as i64 - filled[*item] as i64);
         let half = (design.each + person % 2) / 2;
         for (at, item) in items.into_iter().enumerate() {
@@ -76,42 +84,22 @@ pub(super) fn assigned(design: Design, rng: &mut impl Rng) -> Vec<Slot> {
     slots
 }
 
-/// Normal numbers with a standard deviation, by Box and Muller.
-pub(super) fn normals(count: usize, sd: f64, rng: &mut impl Rng) -> Vec<f64> {
-    (0..count).map(|_| sd * normal(rng)).collect()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
 
-pub(super) fn normal(rng: &mut impl Rng) -> f64 {
-    let radius = (-2.0 * libm::log(1.0 - rng.random::<f64>())).sqrt();
-    radius * libm::cos(std::f64::consts::TAU * rng.random::<f64>())
-}
-
-pub(super) fn expit(logit: f64) -> f64 {
-    1.0 / (1.0 + libm::exp(-logit))
-}
-
-/// The mean of a function of a normal variable, by the trapezoid rule.
-pub(super) fn over(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for step in -72..=72 {
-        let at = f64::from(step) / 8.0;
-        let weight = libm::exp(-at * at / 2.0);
-        sum += weight * of(mean + sd * at);
-        weights += weight;
-    }
-    sum / weights
-}
-
-/// The logit whose mean share over persons and items is `share`.
-pub(super) fn centre(share: f64, sd: f64) -> f64 {
-    let (mut low, mut high) = (-30.0, 30.0);
-    for _ in 0..80 {
-        let middle = f64::midpoint(low, high);
-        if over(middle, sd, expit) < share {
-            low = middle;
-        } else {
-            high = middle;
+    #[test]
+    fn nobody_gets_an_item_twice_and_items_fill_evenly() {
+        for (persons, each) in [(30, 1), (30, 10), (60, 5)] {
+            let slots = assigned(Design { persons, each }, &mut wayword_core::rng(1, &["test"]));
+            let places: BTreeSet<(usize, usize)> = slots.iter().map(|slot| (slot.person, slot.item)).collect();
+            assert_eq!((slots.len(), places.len()), (persons * each, persons * each));
+            let answers = |item: usize| slots.iter().filter(|slot| slot.item == item).count();
+            let (fewest, most) = ((0..ITEMS).map(answers).min(), (0..ITEMS).map(answers).max());
+            assert!(most <= fewest.map(|fewest| fewest + 1), "{fewest:?} {most:?}");
+            let seconds = slots.iter().filter(|slot| slot.is_second).count();
+            assert_eq!(seconds, slots.len() / 2);
         }
     }
-    f64::midpoint(low, high)
 }
