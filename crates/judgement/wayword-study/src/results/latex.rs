@@ -20,7 +20,7 @@ const HEAD: &str = "% \\usepackage{booktabs}; names beyond Latin letters need Lu
 /// With more columns of text than this, their lines break.
 const MOST_WHOLE: usize = 3;
 /// A table of longer rows is set smaller.
-const MOST_CHARS: usize = 75;
+const MOST_CHARS: usize = 60;
 
 /// The results as LaTeX tables; they need the package `booktabs`.
 pub(super) fn latex(results: &Results) -> String {

@@ -183,17 +183,7 @@ pub(super) fn levels(results: &Results, version: &Version, in_words: bool) -> Ve
 /// What comparisons say: each two conditions, and their strengths.
 pub(super) fn pairs(version: &Version) -> Vec<Table> {
     let Some(pairs) = &version.pairs else { return Vec::new() };
-    let heads = [
-        "First",
-        "Second",
-        "First wins",
-        "Second wins",
-        "Ties",
-        "Both bad",
-        "First's share, %",
-        "95 % interval",
-        "Interval by",
-    ];
+    let heads = ["First", "Second", "Wins", "Losses", "Ties", "Both bad", "Share, %", "95 % interval", "Interval by"];
     let mut table = Table::new("Comparisons", &heads, 2);
     if let Some(last) = table.heads.last_mut() {
         last.is_number = false;
@@ -202,6 +192,9 @@ pub(super) fn pairs(version: &Version) -> Vec<Table> {
         table.add(false, pair(row));
     }
     if let Some(side) = &pairs.side {
+        table.notes.push(
+            "Wins, losses and the share are of the first one; the share counts half of what has no winner.".to_owned(),
+        );
         table.notes.push(format!(
             "Of the comparisons with a preference, {} % preferred the text shown as A, {} ({}).",
             number(100.0 * side.value, 1),

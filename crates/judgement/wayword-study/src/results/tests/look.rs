@@ -1,6 +1,9 @@
 //! The page itself, and one to look at.
 
-use super::{figures::of, made::small};
+use super::{
+    figures::of,
+    made::{large, small},
+};
 use crate::Mode;
 
 #[test]
@@ -30,5 +33,8 @@ fn write_results_to_look_at() {
     let folder = std::path::PathBuf::from(std::env::var("WAYWORD_LOOK").unwrap());
     for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
         of(&small(mode)).write(&folder.join(mode.name())).unwrap();
+        let (data, begun) = (large(mode, 200), std::time::Instant::now());
+        of(&data).write(&folder.join(format!("large-{}", mode.name()))).unwrap();
+        println!("{} of 200 people: {:.1} s", mode.name(), begun.elapsed().as_secs_f64());
     }
 }
