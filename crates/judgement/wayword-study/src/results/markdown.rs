@@ -69,8 +69,9 @@ fn table(page: &mut String, depth: usize, table: &Table) {
 fn codebook(page: &mut String, sheets: &[Sheet]) {
     page.push_str("## Files\n\n");
     page.push_str(
-        "CSV as in RFC 4180, UTF-8. Times are seconds after the participant's consent; no file has a clock or a date. Text that begins like a \
-         formula, or with an apostrophe, has one apostrophe in front: take one away. Characters that cannot be seen are replaced by U+FFFD.\n\n",
+        "CSV as in RFC 4180, UTF-8. Times are seconds after the participant's consent; no file has a clock or a date. Text that \
+         begins like a formula, or with an apostrophe, has one apostrophe in front: take one away. Characters that cannot be seen are \
+         replaced by U+FFFD.\n\n",
     );
     for sheet in sheets {
         add(page, format_args!("### {}\n\nA line is {}.\n\n", sheet.file, escaped(sheet.line)));

@@ -1,6 +1,7 @@
 //! What a study says: figures with intervals, agreement, who took part, and the files that show it.
 //!
-//! Everything is made from [`Data`] alone, so that the same answers give the same files. No text of a participant is in a table or on a page; they are in `answers.csv` only.
+//! Everything is made from [`Data`] alone, so that the same answers give the same files. No text of a participant is in a table or
+//! on a page; they are in `answers.csv` only.
 
 mod given;
 mod inert;

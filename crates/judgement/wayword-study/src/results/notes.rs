@@ -33,7 +33,8 @@ pub(super) fn warnings(results: &Results) -> Vec<String> {
     }
     if results.mode != Mode::Pair && !results.conditions.iter().any(|condition| condition.kind != crate::Kind::Run) {
         warnings.push(
-            "There is no control: no text of people and none of another path. So nothing shows how well a good or a wrong text does here.".to_owned(),
+            "There is no control: no text of people and none of another path. So nothing shows how well a good or a wrong text does \
+             here.".to_owned(),
         );
     }
     warnings.extend(results.problems.iter().cloned());
@@ -67,21 +68,33 @@ pub(super) fn notes(results: &Results) -> Vec<String> {
         "Every figure is given twice: from all answers, and without those who failed attention checks or did not finish. Decide before the \
          study which one counts, and report both."
             .to_owned(),
-        "Intervals hold for other persons and other routes than these. Conditions share routes, so a route is the item. An interval ends where \
-         the scale ends."
+        "Intervals hold for other persons and other routes than these. Conditions share routes, so a route is the item. An interval ends \
+         where the scale ends."
             .to_owned(),
     ];
     for method in used(&results.versions) {
         notes.push(format!("Interval by {}: {}.", words::method(method), words::meaning(method)));
     }
     if results.versions.iter().any(|version| !version.differences.is_empty()) {
-        notes.push("A difference is shown where its interval leaves out 0. Many differences are printed, and none is corrected for that: about one in twenty leaves out 0 by chance.".to_owned());
+        notes.push(
+            "A difference is shown where its interval leaves out 0. Many \
+             differences are printed, and none is corrected for that: about one in twenty leaves out 0 by chance."
+                .to_owned(),
+        );
     }
     if results.mode == Mode::Follow {
-        notes.push("Distances go along the viewpoint graph. A success is less than 3 m from the goal. A walk to a goal that cannot be reached has no NE and is in no mean of it.".to_owned());
+        notes.push(
+            "Distances go along the viewpoint graph. A success is less than 3 m from the \
+             goal. A walk to a goal that cannot be reached has no NE and is in no mean of it."
+                .to_owned(),
+        );
     }
     if results.mode == Mode::Rate {
-        notes.push("A ghost is a thing that the text names and the participant did not see; whoever overlooked it in the film reports one too.".to_owned());
+        notes.push(
+            "A ghost is a thing that the text names and the participant did not see; whoever \
+             overlooked it in the film reports one too."
+                .to_owned(),
+        );
         let first = if results.write_first {
             "Participants wrote a text of their own first, which is what they compare with in the first question."
         } else {

@@ -230,10 +230,11 @@ struct Part {
     label: String,
 }
 
-/// A bar below this width, in per cent, has no number on it.
-const ROOM: f64 = 10.0;
+/// Per cent of a bar of levels, and of a narrow bar in the matrix, that a digit takes on a phone.
+const DIGIT: f64 = 4.0;
+const NARROW_DIGIT: f64 = 6.0;
 
-fn parts(counts: &[usize]) -> Vec<Part> {
+fn parts(counts: &[usize], digit: f64) -> Vec<Part> {
     let all: usize = counts.iter().sum();
     let share = |count: usize| 100.0 * count as f64 / all.max(1) as f64;
     let round = |place: f64| (place * 100.0).round() / 100.0;
@@ -241,7 +242,8 @@ fn parts(counts: &[usize]) -> Vec<Part> {
     let mut part = |(class, count): (usize, &usize)| {
         let at = share(before);
         before += count;
-        let label = if share(*count) < ROOM { String::new() } else { count.to_string() };
+        let number = count.to_string();
+        let label = if share(*count) < digit * (number.len() + 1) as f64 { String::new() } else { number };
         (*count > 0).then(|| Part { class, at: round(at), width: round(share(*count)), label })
     };
     (1..).zip(counts).filter_map(&mut part).collect()
@@ -266,7 +268,7 @@ pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
                     id: format!("b-{}-{}-{at}", version.name, scale.name),
                     description: format!("{label}: {}.", told.join(", ")),
                     label,
-                    parts: parts(counts),
+                    parts: parts(counts, DIGIT),
                     answers,
                 })
             })
@@ -326,7 +328,7 @@ pub(super) fn matrix(version: &Version) -> Option<Matrix> {
                 pair.ties,
                 pair.both_bad
             ),
-            parts: parts(&[wins, pair.ties, pair.both_bad, losses]),
+            parts: parts(&[wins, pair.ties, pair.both_bad, losses], NARROW_DIGIT),
         })
     };
     let row = |row: usize| MatrixRow {

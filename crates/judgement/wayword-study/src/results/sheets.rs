@@ -140,7 +140,7 @@ impl Sources<'_> {
                     Cell::text(viewpoint.as_str()),
                     Cell::Number(seconds(one.participant.consented_ms, at_ms), 3),
                     Cell::Number(seconds(one.slot.given_ms, at_ms), 3),
-                    Cell::number(walks.to_goal_m(one.item.route, viewpoint), 3),
+                    Cell::number(walks.metres_to_goal(one.item.route, viewpoint), 3),
                 ]);
             }
         }

@@ -28,7 +28,7 @@ impl<'a> Walks<'a> {
     }
 
     /// How far a viewpoint is from the goal of a route along the graph, metres.
-    pub(super) fn to_goal_m(&mut self, route: u32, from: &ViewpointId) -> Option<f64> {
+    pub(super) fn metres_to_goal(&mut self, route: u32, from: &ViewpointId) -> Option<f64> {
         let route = self.route(route).ok()?;
         let goal = route.viewpoints.last()?;
         self.distances(&route.scene).ok()?.metres(from, goal)

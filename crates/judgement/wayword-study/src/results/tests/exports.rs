@@ -118,7 +118,11 @@ proptest! {
         let finished = column(&rows, "in_finished").iter().filter(|cell| *cell == "1").count();
         prop_assert_eq!(finished, results.versions[1].answers);
         let levels: u32 = column(&rows, "accurate").iter().map(|cell| cell.parse::<u32>().unwrap()).sum();
-        let given: u32 = data.slots.iter().filter_map(|slot| match slot.answer { Some(Answer::Rate { ratings }) => Some(u32::from(ratings[1])), _ => None }).sum();
+        let accurate = |slot: &crate::Slot| match slot.answer {
+            Some(Answer::Rate { ratings }) => u32::from(ratings[1]),
+            _ => 0,
+        };
+        let given: u32 = data.slots.iter().map(accurate).sum();
         prop_assert_eq!(levels, given);
         for own in column(&rows, "own_text") {
             let text = own.strip_prefix('\'').unwrap_or(&own);
