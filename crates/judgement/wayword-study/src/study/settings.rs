@@ -117,7 +117,7 @@ impl Settings {
             agreement: "I am at least 18 years old. I have read this, and I want to take part.".to_owned(),
             examples: Vec::new(),
             write_first: mode == Mode::Rate,
-            attention_checks: if minutes >= 5 { 2 } else { 1 },
+            attention_checks: u32::from(per_participant > 2) + u32::from(per_participant > 4),
             lease_s: 20 * 60,
             questions: Question::of_mode(mode),
             recruiter: Recruiter::Links,
@@ -148,7 +148,8 @@ impl Settings {
             return Err("about and agreement: participants must read what they consent to".to_owned());
         }
         let url = &self.codes.return_url;
-        if !url.is_empty() && !(url.starts_with("https://") && url.contains("{code}")) {
+        let is_usable = url.starts_with("https://") && url.contains("{code}");
+        if !url.is_empty() && !is_usable {
             return Err("codes.return_url: begin it with https:// and put {code} where the code goes".to_owned());
         }
         if let Recruiter::Parameters { person, session, .. } = &self.recruiter

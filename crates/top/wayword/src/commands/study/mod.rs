@@ -8,20 +8,25 @@ mod walks;
 
 use crate::{
     cli::{Study as Args, StudyCommand, StudyForget, StudyInvite, StudyResults, StudyStatus},
+    count::count,
     error::{Error, Exit},
     output::Output,
 };
 use serde::Serialize;
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf};
 use told::{Closed, Links, Matched, Removed, Standing};
-use wayword_study::Study;
+use wayword_study::{Study, now_ms, results::Outlook};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     match &args.command {
         StudyCommand::New(args) => new::make(args, output)?,
         StudyCommand::Serve(args) => return serve::run(args, output),
         StudyCommand::Invite(args) => invite(args, output)?,
-        StudyCommand::Plan(_) => return Err(Error::usage("PLAN PENDING", "")),
+        StudyCommand::Plan(args) => {
+            let study = Study::open(&args.study)?;
+            let outlook = Outlook::new(&study.plan, &study.settings, &study.items);
+            output.data(&outlook, &outlook);
+        }
         StudyCommand::Status(args) => status(args, output)?,
         StudyCommand::Results(args) => results(args, output)?,
         StudyCommand::Forget(args) => forget(args, output)?,
@@ -69,13 +74,26 @@ fn forget(args: &StudyForget, output: &Output) -> Result<(), Error> {
 /// What `results` wrote.
 #[derive(Debug, Serialize)]
 struct Written {
+    /// How many answers the figures are made of.
+    answers: usize,
     files: Vec<PathBuf>,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for file in &self.files {
+            writeln!(f, "{}", file.display())?;
+        }
+        write!(f, "{}", count(self.answers, "answer"))
+    }
 }
 
 fn results(args: &StudyResults, output: &Output) -> Result<(), Error> {
     let study = Study::open(&args.study)?;
     study.note_export(&args.out)?;
     let data = study.data()?;
-    drop((data, Written { files: Vec::new() }));
-    Err(Error::usage("RESULTS PENDING", ""))
+    let answers = data.slots.iter().filter(|slot| slot.answer.is_some() && slot.position.is_some()).count();
+    let written = Written { answers, files: wayword_study::results(&data, now_ms())?.write(&args.out)? };
+    output.data(&written, &written);
+    Ok(())
 }

@@ -1,0 +1,85 @@
+//! Text that is nothing but text, whatever it holds.
+
+/// Longest name in a table, characters, because names come from files.
+const MOST_NAME_CHARS: usize = 80;
+/// What stands in place of a character that cannot be shown.
+const REPLACED: char = '\u{fffd}';
+
+/// Text without characters that act instead of being seen: controls, and what turns the direction of the text around them.
+/// Ends of lines become `\n`, and tabs stay.
+pub(super) fn plain(text: &str) -> String {
+    let lines = text.replace("\r\n", "\n").replace('\r', "\n");
+    lines.chars().map(|c| if is_active(c) && c != '\n' && c != '\t' { REPLACED } else { c }).collect()
+}
+
+/// Plain text on one line.
+pub(super) fn line(text: &str) -> String {
+    plain(text).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// A name from a file: plain, on one line, and not too long for a table.
+pub(super) fn name(text: &str) -> String {
+    let name = line(text);
+    match name.char_indices().nth(MOST_NAME_CHARS) {
+        Some((at, _)) => format!("{}…", &name[..at]),
+        None if name.is_empty() => "(no name)".to_owned(),
+        None => name,
+    }
+}
+
+fn is_active(c: char) -> bool {
+    let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{061c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let breaks = matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
+    c.is_control() || turns || breaks
+}
+
+/// Text without a meaning in Markdown, on one line.
+pub(super) fn markdown(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in line(text).chars() {
+        match c {
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '&' => escaped.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '|' | '~' | '$' | '[' | ']' | '#' | '!' | '{' | '}' => escaped.extend(['\\', c]),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// Text that LaTeX takes for nothing but text, on one line.
+pub(super) fn latex(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in line(text).chars() {
+        match c {
+            '\\' => escaped.push_str("\\textbackslash{}"),
+            '~' => escaped.push_str("\\textasciitilde{}"),
+            '^' => escaped.push_str("\\textasciicircum{}"),
+            '<' => escaped.push_str("\\textless{}"),
+            '>' => escaped.push_str("\\textgreater{}"),
+            '|' => escaped.push_str("\\textbar{}"),
+            '"' => escaped.push_str("\\textquotedbl{}"),
+            '−' => escaped.push_str("$-$"),
+            '≥' => escaped.push_str("$\\geq$"),
+            '…' => escaped.push_str("\\ldots{}"),
+            // After the end of a line of a table it would begin an option.
+            '[' => escaped.push_str("{[}"),
+            '{' | '}' | '$' | '&' | '#' | '_' | '%' => escaped.extend(['\\', c]),
+            REPLACED => escaped.push('?'),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// Plain text as a cell of a CSV file (RFC 4180).
+///
+/// A program of tables takes a cell that begins like a formula for one (ASVS 5.0, 1.2.10), so such a cell gets an apostrophe in
+/// front. So does one that begins with an apostrophe: whoever reads the file takes one apostrophe away, always.
+pub(super) fn cell(text: &str) -> String {
+    let begins = |c: char| matches!(c, '=' | '+' | '-' | '@' | '＝' | '＋' | '－' | '＠' | '−' | '\'');
+    let is_formula = text.starts_with(['\t', '\r', '\n', '\0']) || text.trim_start().starts_with(begins);
+    let text = format!("{}{}", if is_formula { "'" } else { "" }, plain(text));
+    if text.contains([',', '"', '\n', '\'', ';', '\t']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+}

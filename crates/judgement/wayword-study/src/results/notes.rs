@@ -1,0 +1,107 @@
+//! What to know before reading the figures.
+
+use super::{Results, Version, words};
+use crate::Mode;
+use std::collections::BTreeSet;
+use wayword_metrics::Method;
+
+/// What the study was, in a sentence.
+pub(super) fn subject(results: &Results) -> String {
+    let [everybody, _] = &results.versions;
+    let task = match results.mode {
+        Mode::Follow => "people walked by the text alone",
+        Mode::Rate => "people watched a walk and rated a text about it",
+        Mode::Pair => "people watched a walk and chose between two texts about it",
+    };
+    let answers = words::count(everybody.answers, "answer", "answers");
+    let persons = words::count(everybody.persons, "person", "persons");
+    let state = if results.is_closed { "closed" } else { "not closed yet, so the figures can change" };
+    let style = if results.style.is_empty() {
+        String::new()
+    } else {
+        format!(" Style of the texts: {}.", super::inert::name(&results.style))
+    };
+    format!("Mode {}: {task}. {answers} of {persons}. The study is {state}.{style}", results.mode.name())
+}
+
+/// What is wrong, or too little, to be read before anything else.
+pub(super) fn warnings(results: &Results) -> Vec<String> {
+    let [everybody, _] = &results.versions;
+    let mut warnings = Vec::new();
+    if everybody.answers == 0 {
+        warnings.push("There are no answers yet.".to_owned());
+    }
+    if results.mode != Mode::Pair && !results.conditions.iter().any(|condition| condition.kind != crate::Kind::Run) {
+        warnings.push(
+            "There is no control: no text of people and none of another path. So nothing shows how well a good or a wrong text does \
+             here.".to_owned(),
+        );
+    }
+    warnings.extend(results.problems.iter().cloned());
+    warnings
+}
+
+/// Methods that any interval of the tables was made by.
+fn methods(versions: &[Version]) -> BTreeSet<&'static str> {
+    let of_rows = versions
+        .iter()
+        .flat_map(|version| &version.rows)
+        .flat_map(|row| row.figures.values().map(|figure| figure.method));
+    let less = versions.iter().flat_map(|version| &version.differences);
+    let of_less = less.flat_map(|less| less.figures.values().map(|figure| figure.method));
+    let pairs = versions.iter().filter_map(|version| version.pairs.as_ref());
+    let of_pairs =
+        pairs.flat_map(|pairs| pairs.rows.iter().filter_map(|row| row.share.as_ref()).map(|share| share.method));
+    of_rows.chain(of_less).chain(of_pairs).map(words::method).collect()
+}
+
+/// The methods that were used, in the order in which they are explained.
+pub(super) fn used(versions: &[Version]) -> Vec<Method> {
+    let used = methods(versions);
+    words::METHODS.into_iter().filter(|method| used.contains(words::method(*method))).collect()
+}
+
+/// How to read the figures.
+pub(super) fn notes(results: &Results) -> Vec<String> {
+    let mut notes = vec![
+        "Practice is in no figure. Neither are answers of those who did not understand the task in two tries.".to_owned(),
+        "Every figure is given twice: from all answers, and without those who failed attention checks or did not finish. Decide before the \
+         study which one counts, and report both."
+            .to_owned(),
+        "Intervals hold for other persons and other routes than these. Conditions share routes, so a route is the item. An interval ends \
+         where the scale ends."
+            .to_owned(),
+    ];
+    for method in used(&results.versions) {
+        notes.push(format!("Interval by {}: {}.", words::method(method), words::meaning(method)));
+    }
+    if results.versions.iter().any(|version| !version.differences.is_empty()) {
+        notes.push(
+            "A difference is shown where its interval leaves out 0. Many \
+             differences are printed, and none is corrected for that: about one in twenty leaves out 0 by chance."
+                .to_owned(),
+        );
+    }
+    if results.mode == Mode::Follow {
+        notes.push(
+            "Distances go along the viewpoint graph. A success is less than 3 m from the \
+             goal. A walk to a goal that cannot be reached has no NE and is in no mean of it."
+                .to_owned(),
+        );
+    }
+    if results.mode == Mode::Rate {
+        notes.push(
+            "A ghost is a thing that the text names and the participant did not see; whoever \
+             overlooked it in the film reports one too."
+                .to_owned(),
+        );
+        let first = if results.write_first {
+            "Participants wrote a text of their own first, which is what they compare with in the first question."
+        } else {
+            "Participants did not write a text of their own first."
+        };
+        notes.push(first.to_owned());
+    }
+    notes.push(format!("Wayword {}; seed {}; {}.", results.wayword, results.seed, results.format));
+    notes
+}

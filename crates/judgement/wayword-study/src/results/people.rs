@@ -1,0 +1,234 @@
+//! Who took part, and where people stopped.
+
+use super::{
+    given::{Answered, seconds},
+    names::Names,
+};
+use crate::{Data, Participant, Slot, SlotState, Status};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Who took part, and where people stopped.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct People {
+    /// Who consented, the forgotten ones left out.
+    pub consented: usize,
+    /// Who answered everything and passed the attention checks.
+    pub complete: usize,
+    /// Who has not finished and was here within the lease.
+    pub live: usize,
+    /// Who has not finished and was not here for longer than the lease.
+    pub quiet: usize,
+    /// Who stopped and let us keep the answers.
+    pub withdrawn: usize,
+    /// Who did not understand the task in two tries.
+    pub screened_out: usize,
+    /// Who answered everything and failed the attention checks.
+    pub attention_failed: usize,
+    /// Whose answers were deleted.
+    pub forgotten: u64,
+    /// After how many seconds somebody counts as gone quiet.
+    pub lease_s: u64,
+    /// Median of the minutes from consent to the end, of those who answered everything.
+    pub median_minutes: Option<f64>,
+    /// What the participants were told that it takes, minutes.
+    pub announced_minutes: u32,
+    /// How many understood the task at once, at the second try, and not in two.
+    pub misunderstood: [usize; 3],
+    /// What became of the items that were given, by their place in the sequence of a participant.
+    pub by_position: Vec<Handed>,
+    /// The same by condition.
+    pub by_condition: Vec<Handed>,
+    /// The same by item.
+    pub by_item: Vec<Handed>,
+    /// The attention checks.
+    pub attention: Attention,
+}
+
+/// What became of items that were given.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Handed {
+    /// The position from 1, the name of the condition, or the number of the item.
+    pub of: String,
+    /// How often one was given.
+    pub given: usize,
+    /// How many were answered.
+    pub answered: usize,
+    /// How many went back.
+    pub returned: usize,
+    /// How many somebody still has.
+    pub live: usize,
+    /// Median of the seconds from getting one to its answer.
+    pub median_seconds: Option<f64>,
+}
+
+/// The attention checks of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Attention {
+    /// How many a participant gets.
+    pub per_participant: u32,
+    /// How many failed checks are let pass: one in a study of 5 minutes or more, none in a shorter one (Prolific's rule).
+    pub most_failed: usize,
+    /// How many were answered, by everybody together.
+    pub answered: usize,
+    /// How many of them were failed.
+    pub failed: usize,
+    /// Who failed any.
+    pub by_participant: Vec<Failed>,
+}
+
+/// The failed attention checks of a participant.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Failed {
+    /// The participant's name in the results.
+    pub participant: String,
+    /// How many checks were answered.
+    pub answered: usize,
+    /// The numbers of the failed ones, from 1.
+    pub checks: Vec<u32>,
+    /// Whether Prolific's rule allows to reject the submission.
+    pub is_over: bool,
+}
+
+/// From this length on two attention checks have to be failed before a submission may be rejected (Prolific).
+const LONG_MINUTES: u32 = 5;
+
+/// How many failed attention checks are let pass.
+pub(super) fn most_failed(minutes: u32) -> usize {
+    usize::from(minutes >= LONG_MINUTES)
+}
+
+impl People {
+    pub(super) fn new(data: &Data, names: &Names<'_>, answered: &[Answered<'_>], now_ms: i64) -> Self {
+        let people = &data.participants;
+        let count = |status| people.iter().filter(|person| person.status == status).count();
+        let is_quiet = |person: &&Participant| seconds(person.seen_ms, now_ms) > data.settings.lease_s as f64;
+        let started = people.iter().filter(|person| person.status == Status::Started);
+        let quiet = started.clone().filter(is_quiet).count();
+        let minutes = people.iter().filter_map(minutes).collect();
+        let times = |times: usize| people.iter().filter(|person| person.misunderstood.min(2) as usize == times).count();
+        let tally = Tally::new(data, answered);
+        Self {
+            consented: people.len(),
+            complete: count(Status::Complete),
+            live: started.count() - quiet,
+            quiet,
+            withdrawn: count(Status::Withdrawn),
+            screened_out: count(Status::ScreenedOut),
+            attention_failed: count(Status::AttentionFailed),
+            forgotten: data.forgotten,
+            lease_s: data.settings.lease_s,
+            median_minutes: median(minutes),
+            announced_minutes: data.settings.minutes,
+            misunderstood: [0, 1, 2].map(times),
+            by_position: tally.by_position(),
+            by_condition: tally.by_condition(),
+            by_item: tally.by_item(),
+            attention: Attention::new(data, names),
+        }
+    }
+}
+
+/// How long somebody took who answered everything.
+fn minutes(person: &Participant) -> Option<f64> {
+    let is_done = matches!(person.status, Status::Complete | Status::AttentionFailed);
+    let end_ms = person.finished_ms.filter(|_| is_done)?;
+    Some(seconds(person.consented_ms, end_ms) / 60.0)
+}
+
+/// The middle one, or the mean of the two in the middle.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let high = *values.get(middle)?;
+    if values.len() % 2 == 1 {
+        return Some(high);
+    }
+    Some(f64::midpoint(*values.get(middle.checked_sub(1)?)?, high))
+}
+
+/// Items that were given, with the times of answers.
+struct Tally<'a> {
+    data: &'a Data,
+    slots: Vec<(&'a Slot, u32)>,
+    /// The seconds of an answer, by participant and item.
+    seconds: BTreeMap<(&'a str, u32), f64>,
+}
+
+impl<'a> Tally<'a> {
+    fn new(data: &'a Data, answered: &'a [Answered<'a>]) -> Self {
+        let slots = data.slots.iter().filter_map(|slot| Some((slot, slot.position?))).collect();
+        let time = |one: &'a Answered<'a>| Some(((one.participant.id.as_str(), one.item.id), one.seconds()?));
+        Self { data, slots, seconds: answered.iter().filter_map(time).collect() }
+    }
+
+    fn given(&self, of: String, slots: impl Iterator<Item = &'a Slot>) -> Handed {
+        let mut given = Handed { of, ..Handed::default() };
+        let mut times = Vec::new();
+        for slot in slots {
+            given.given += 1;
+            match slot.state {
+                SlotState::Answered => given.answered += 1,
+                SlotState::Returned => given.returned += 1,
+                SlotState::Live => given.live += 1,
+            }
+            times.extend(self.seconds.get(&(slot.participant.as_str(), slot.item)));
+        }
+        given.median_seconds = median(times);
+        given
+    }
+
+    fn by_position(&self) -> Vec<Handed> {
+        let last = self.slots.iter().map(|(_, position)| *position + 1).max().unwrap_or(0);
+        let at = |place: u32| self.slots.iter().filter(move |(_, position)| *position == place).map(|(slot, _)| *slot);
+        // A place beyond what anybody was to get would be a broken store; the table stays small whatever it says.
+        (0..last.min(10_000)).map(|place| self.given((place + 1).to_string(), at(place))).collect()
+    }
+
+    fn by_condition(&self) -> Vec<Handed> {
+        let has = |slot: &Slot, name: &str| {
+            let item = self.data.items.get(slot.item as usize);
+            item.is_some_and(|item| item.texts.iter().any(|told| told.condition == name))
+        };
+        let of = |name: &str| {
+            let slots = self.slots.iter().map(|(slot, _)| *slot).filter(|slot| has(slot, name));
+            self.given(name.to_owned(), slots)
+        };
+        self.data.plan.conditions.iter().map(|condition| of(&condition.name)).collect()
+    }
+
+    fn by_item(&self) -> Vec<Handed> {
+        let mut slots: BTreeMap<u32, Vec<&Slot>> = BTreeMap::new();
+        for (slot, _) in &self.slots {
+            slots.entry(slot.item).or_default().push(slot);
+        }
+        let items = self.data.items.iter().filter(|item| !item.is_practice);
+        let of = |id: u32| self.given(id.to_string(), slots.get(&id).into_iter().flatten().copied());
+        items.map(|item| of(item.id)).collect()
+    }
+}
+
+impl Attention {
+    fn new(data: &Data, names: &Names<'_>) -> Self {
+        let most_failed = most_failed(data.settings.minutes);
+        let failed = |person: &Participant| {
+            let checks: Vec<u32> =
+                person.attention.iter().filter(|check| !check.passed).map(|check| check.number + 1).collect();
+            (!checks.is_empty()).then(|| Failed {
+                participant: names.of(&person.id).to_owned(),
+                answered: person.attention.len(),
+                is_over: checks.len() > most_failed,
+                checks,
+            })
+        };
+        let mut by_participant: Vec<Failed> = data.participants.iter().filter_map(failed).collect();
+        by_participant.sort_by(|a, b| a.participant.cmp(&b.participant));
+        Self {
+            per_participant: data.settings.attention_checks,
+            most_failed,
+            answered: data.participants.iter().map(|person| person.attention.len()).sum(),
+            failed: by_participant.iter().map(|one| one.checks.len()).sum(),
+            by_participant,
+        }
+    }
+}

@@ -1,0 +1,384 @@
+//! What the plots of the page show.
+
+use super::{
+    Handed, Measure, Results, Unit, Version,
+    inert::name,
+    tables,
+    words::{self, number},
+};
+use serde::Serialize;
+
+/// Figures of the conditions with their intervals, one under another on one axis. Places are in per cent of the plot's width.
+#[derive(Debug, Serialize)]
+pub(super) struct Forest {
+    title: String,
+    rows: Vec<ForestRow>,
+    ticks: Vec<Tick>,
+    /// Where zero is, if a difference is shown.
+    zero: Option<f64>,
+    caption: String,
+}
+
+#[derive(Debug, Serialize)]
+struct ForestRow {
+    id: String,
+    label: String,
+    is_control: bool,
+    at: f64,
+    /// Nothing where there is no interval.
+    whisker: Option<[f64; 2]>,
+    is_filled: bool,
+    figure: String,
+    counts: String,
+    description: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Tick {
+    at: f64,
+    label: String,
+}
+
+/// How much of the plot's width is left free on either side, so that no dot is cut.
+const EDGE: f64 = 3.0;
+
+/// From where to where a plot goes.
+struct Axis {
+    low: f64,
+    high: f64,
+    step: f64,
+}
+
+impl Axis {
+    /// The axis of a measure: its whole range, or from 0 to a round number that holds all.
+    fn of(measure: &Measure, ends: &[f64]) -> Self {
+        match measure.unit {
+            Unit::PerCent => Self { low: 0.0, high: 1.0, step: 0.25 },
+            Unit::Level => Self { low: 1.0, high: 5.0, step: 1.0 },
+            Unit::Metres | Unit::Seconds | Unit::Count => {
+                let step = step(largest(ends));
+                Self { low: 0.0, high: 4.0 * step, step }
+            }
+        }
+    }
+
+    /// The axis of differences, as far to the left as to the right.
+    fn around_zero(ends: &[f64]) -> Self {
+        let step = 2.0 * step(largest(ends));
+        Self { low: -2.0 * step, high: 2.0 * step, step }
+    }
+
+    fn place(&self, value: f64) -> f64 {
+        let along = (value.clamp(self.low, self.high) - self.low) / (self.high - self.low);
+        ((EDGE + along * (100.0 - 2.0 * EDGE)) * 100.0).round() / 100.0
+    }
+
+    fn ticks(&self, measure: &Measure) -> Vec<Tick> {
+        let count = ((self.high - self.low) / self.step).round() as usize;
+        let digits = if self.step * scale(measure) < 1.0 {
+            2
+        } else {
+            usize::from(self.step * scale(measure) < 5.0 && self.step.fract() != 0.0)
+        };
+        let tick = |at: usize| {
+            let value = self.low + at as f64 * self.step;
+            Tick { at: self.place(value), label: number(value * scale(measure), digits) }
+        };
+        (0..=count).map(tick).collect()
+    }
+}
+
+fn scale(measure: &Measure) -> f64 {
+    if measure.unit == Unit::PerCent { 100.0 } else { 1.0 }
+}
+
+fn largest(ends: &[f64]) -> f64 {
+    ends.iter().copied().filter(|end| end.is_finite()).map(f64::abs).fold(0.0, f64::max)
+}
+
+/// A quarter of a round number that is not below a value.
+fn step(most: f64) -> f64 {
+    let round = [
+        0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 250.0, 500.0, 1000.0, 10_000.0,
+    ];
+    round.into_iter().find(|step| 4.0 * step >= most).unwrap_or(100_000.0)
+}
+
+/// A plot for each measure that any condition has a figure of.
+pub(super) fn forests(results: &Results, version: &Version) -> Vec<Forest> {
+    let forest = |measure: &Measure| {
+        let figures: Vec<_> =
+            version.rows.iter().filter_map(|row| Some((row, row.figures.get(measure.name)?))).collect();
+        let ends: Vec<f64> =
+            figures.iter().flat_map(|(_, figure)| with_ends(figure.value, figure.interval.as_ref())).collect();
+        let axis = (!figures.is_empty()).then(|| Axis::of(measure, &ends))?;
+        let row = |(at, (row, figure)): (usize, &(&super::Row, &wayword_metrics::Figure))| {
+            let shown = shown(measure, figure.value, figure.interval.as_ref());
+            let label = tables::title(&row.condition, row.kind);
+            let counts = format!(
+                "{}, {}, {}; {}",
+                words::count(figure.answers, "answer", "answers"),
+                words::count(figure.persons, "person", "persons"),
+                words::count(figure.items, "route", "routes"),
+                words::method(figure.method)
+            );
+            ForestRow {
+                id: format!("f-{}-{}-{at}", version.name, measure.name),
+                description: format!("{label}: {shown}. {counts}."),
+                label,
+                is_control: row.is_control,
+                at: axis.place(figure.value),
+                whisker: figure.interval.as_ref().map(|interval| [axis.place(interval.low), axis.place(interval.high)]),
+                is_filled: true,
+                figure: shown,
+                counts,
+            }
+        };
+        Some(Forest {
+            title: measure.heading(),
+            rows: figures.iter().enumerate().map(row).collect(),
+            ticks: axis.ticks(measure),
+            zero: None,
+            caption: sentence(measure.meaning),
+        })
+    };
+    results.measures.iter().filter_map(forest).collect()
+}
+
+/// A plot of the differences to the first condition for each measure that has any.
+pub(super) fn less(results: &Results, version: &Version) -> Vec<Forest> {
+    let forest = |measure: &Measure| {
+        let figures: Vec<_> =
+            version.differences.iter().filter_map(|less| Some((less, less.figures.get(measure.name)?))).collect();
+        let ends: Vec<f64> =
+            figures.iter().flat_map(|(_, figure)| with_ends(figure.value, figure.interval.as_ref())).collect();
+        let axis = (!figures.is_empty()).then(|| Axis::around_zero(&ends))?;
+        let row = |(at, (less, figure)): (usize, &(&super::Less, &wayword_metrics::Difference))| {
+            let shown = shown(measure, figure.value, figure.interval.as_ref());
+            let kind = version
+                .rows
+                .iter()
+                .find(|row| row.condition == less.condition)
+                .map_or(crate::Kind::Run, |row| row.kind);
+            let label = tables::title(&less.condition, kind);
+            let beside_zero = |interval: &wayword_metrics::Interval| interval.low > 0.0 || interval.high < 0.0;
+            let counts = words::method(figure.method).to_owned();
+            ForestRow {
+                id: format!("d-{}-{}-{at}", version.name, measure.name),
+                description: format!("{label} minus {}: {shown}. {counts}.", name(&less.minus)),
+                label,
+                is_control: kind != crate::Kind::Run,
+                at: axis.place(figure.value),
+                whisker: figure.interval.as_ref().map(|interval| [axis.place(interval.low), axis.place(interval.high)]),
+                is_filled: figure.interval.as_ref().is_some_and(beside_zero),
+                figure: shown,
+                counts,
+            }
+        };
+        let unit = if measure.unit == Unit::PerCent { format!("{}, points", measure.label) } else { measure.heading() };
+        Some(Forest {
+            title: unit,
+            rows: figures.iter().enumerate().map(row).collect(),
+            ticks: axis.ticks(measure),
+            zero: Some(axis.place(0.0)),
+            caption: sentence(measure.meaning),
+        })
+    };
+    results.measures.iter().filter_map(forest).collect()
+}
+
+fn with_ends(value: f64, interval: Option<&wayword_metrics::Interval>) -> Vec<f64> {
+    std::iter::once(value).chain(interval.into_iter().flat_map(|interval| [interval.low, interval.high])).collect()
+}
+
+fn shown(measure: &Measure, value: f64, interval: Option<&wayword_metrics::Interval>) -> String {
+    let ends = interval.map_or_else(|| "no interval".to_owned(), |interval| words::interval(measure, Some(interval)));
+    format!("{} {ends}", words::value(measure, value))
+}
+
+/// A meaning as a sentence.
+fn sentence(meaning: &str) -> String {
+    let mut letters = meaning.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+/// The levels of a question, a bar for each condition.
+#[derive(Debug, Serialize)]
+pub(super) struct Bars {
+    title: String,
+    rows: Vec<BarRow>,
+    levels: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct BarRow {
+    id: String,
+    label: String,
+    description: String,
+    parts: Vec<Part>,
+    answers: usize,
+}
+
+/// A piece of a bar.
+#[derive(Debug, Serialize)]
+struct Part {
+    /// From 1.
+    class: usize,
+    at: f64,
+    width: f64,
+    /// What is written on it, where there is room.
+    label: String,
+}
+
+/// Per cent of a bar of levels, and of a narrow bar in the matrix, that a digit takes on a phone.
+const DIGIT: f64 = 4.0;
+const NARROW_DIGIT: f64 = 6.0;
+
+fn parts(counts: &[usize], digit: f64) -> Vec<Part> {
+    let all: usize = counts.iter().sum();
+    let share = |count: usize| 100.0 * count as f64 / all.max(1) as f64;
+    let round = |place: f64| (place * 100.0).round() / 100.0;
+    let mut before = 0;
+    let mut part = |(class, count): (usize, &usize)| {
+        let at = share(before);
+        before += count;
+        let number = count.to_string();
+        let label = if share(*count) < digit * (number.len() + 1) as f64 { String::new() } else { number };
+        (*count > 0).then(|| Part { class, at: round(at), width: round(share(*count)), label })
+    };
+    (1..).zip(counts).filter_map(&mut part).collect()
+}
+
+/// A plot of levels for each question.
+pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
+    let of = |scale: &crate::wording::Scale| Bars {
+        title: scale.text.to_owned(),
+        levels: (1..).zip(scale.levels).map(|(level, word): (u8, &str)| format!("{level} {word}")).collect(),
+        rows: version
+            .rows
+            .iter()
+            .enumerate()
+            .filter_map(|(at, row)| {
+                let counts = row.levels.get(scale.name)?;
+                let answers: usize = counts.iter().sum();
+                let label = tables::title(&row.condition, row.kind);
+                let told: Vec<String> =
+                    counts.iter().zip(scale.levels).map(|(count, word)| format!("{word} {count}")).collect();
+                (answers > 0).then(|| BarRow {
+                    id: format!("b-{}-{}-{at}", version.name, scale.name),
+                    description: format!("{label}: {}.", told.join(", ")),
+                    label,
+                    parts: parts(counts, DIGIT),
+                    answers,
+                })
+            })
+            .collect(),
+    };
+    results.scales.iter().map(of).filter(|bars| !bars.rows.is_empty()).collect()
+}
+
+/// Who wins against whom.
+#[derive(Debug, Serialize)]
+pub(super) struct Matrix {
+    conditions: Vec<String>,
+    rows: Vec<MatrixRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct MatrixRow {
+    label: String,
+    cells: Vec<Option<MatrixCell>>,
+}
+
+#[derive(Debug, Serialize)]
+struct MatrixCell {
+    id: String,
+    share: String,
+    interval: String,
+    description: String,
+    parts: Vec<Part>,
+}
+
+/// The matrix of the comparisons of a version; `None` where there are none.
+pub(super) fn matrix(version: &Version) -> Option<Matrix> {
+    let pairs = version.pairs.as_ref().filter(|pairs| !pairs.rows.is_empty())?;
+    let names: Vec<&str> = version.rows.iter().map(|row| row.condition.as_str()).collect();
+    let cell = |row: usize, column: usize| {
+        let (this, other) = (names[row], names[column]);
+        let pair = pairs.rows.iter().find(|pair| {
+            (pair.first == this && pair.second == other) || (pair.first == other && pair.second == this)
+        })?;
+        let is_first = pair.first == this;
+        let (wins, losses) =
+            if is_first { (pair.first_wins, pair.second_wins) } else { (pair.second_wins, pair.first_wins) };
+        let share = pair.share.as_ref()?;
+        let turn = |value: f64| if is_first { value } else { 1.0 - value };
+        let ends = share.interval.as_ref().map(|interval| {
+            let (a, b) = (turn(interval.low), turn(interval.high));
+            wayword_metrics::Interval { low: a.min(b), high: a.max(b) }
+        });
+        Some(MatrixCell {
+            id: format!("m-{}-{row}-{column}", version.name),
+            share: format!("{} %", number(100.0 * turn(share.value), 1)),
+            interval: tables::per_cent(ends.as_ref()),
+            description: format!(
+                "{} against {}: {wins} wins, {} ties, {} both bad, {losses} losses.",
+                name(this),
+                name(other),
+                pair.ties,
+                pair.both_bad
+            ),
+            parts: parts(&[wins, pair.ties, pair.both_bad, losses], NARROW_DIGIT),
+        })
+    };
+    let row = |row: usize| MatrixRow {
+        label: name(names[row]),
+        cells: (0..names.len()).map(|column| cell(row, column)).collect(),
+    };
+    Some(Matrix { conditions: names.iter().map(|one| name(one)).collect(), rows: (0..names.len()).map(row).collect() })
+}
+
+/// How many were given the item at each position, and how many answered it.
+#[derive(Debug, Serialize)]
+pub(super) struct DropOff {
+    given: String,
+    answered: String,
+    dots: Vec<[f64; 2]>,
+    across: Vec<Tick>,
+    up: Vec<Tick>,
+    description: String,
+}
+
+/// The plot's inner size and its margins.
+const WIDE: f64 = 300.0;
+const HIGH: f64 = 140.0;
+const LEFT: f64 = 34.0;
+const TOP: f64 = 10.0;
+
+/// The curve of those who were given an item and answered it; `None` where nobody was given one.
+pub(super) fn drop_off(rows: &[Handed]) -> Option<DropOff> {
+    let most = rows.iter().map(|row| row.given).max().filter(|most| *most > 0)? as f64;
+    let top = 4.0 * step(most).max(1.0);
+    let last = (rows.len().max(2) - 1) as f64;
+    let round = |place: f64| (place * 10.0).round() / 10.0;
+    let x = |at: usize| round(LEFT + WIDE * at as f64 / last);
+    let y = |count: f64| round(TOP + HIGH * (1.0 - count / top));
+    let line = |of: &dyn Fn(&Handed) -> usize| {
+        let points: Vec<String> =
+            rows.iter().enumerate().map(|(at, row)| format!("{} {}", x(at), y(of(row) as f64))).collect();
+        format!("M{}", points.join("L"))
+    };
+    let every = rows.len().div_ceil(10).max(1);
+    let across = (0..rows.len()).filter(|at| at % every == 0).map(|at| Tick { at: x(at), label: (at + 1).to_string() });
+    let up = (0..=4).map(|at| Tick { at: y(top / 4.0 * f64::from(at)), label: number(top / 4.0 * f64::from(at), 0) });
+    let ends = |row: &Handed| format!("{} were given one and {} answered it", row.given, row.answered);
+    let (first, end) = (rows.first()?, rows.last()?);
+    Some(DropOff {
+        given: line(&|row| row.given),
+        answered: line(&|row| row.answered),
+        dots: rows.iter().enumerate().map(|(at, row)| [x(at), y(row.answered as f64)]).collect(),
+        across: across.collect(),
+        up: up.collect(),
+        description: format!("At position 1, {}. At position {}, {}.", ends(first), rows.len(), ends(end)),
+    })
+}

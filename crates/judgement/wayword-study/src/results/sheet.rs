@@ -1,0 +1,106 @@
+//! Files of answers, one line each, and what their columns mean.
+
+use super::inert;
+use std::fmt::Write;
+
+/// A column of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Column {
+    pub(super) name: &'static str,
+    pub(super) meaning: String,
+    /// Unit of a number; empty where it has none, or where it is text.
+    pub(super) unit: &'static str,
+    /// What it can be.
+    pub(super) values: String,
+}
+
+/// A cell.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Cell {
+    /// Nothing is known.
+    Empty,
+    Whole(i64),
+    /// With so many digits after the point.
+    Number(f64, usize),
+    /// Text from anywhere.
+    Text(String),
+}
+
+/// A file of lines that are alike.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sheet {
+    pub(super) file: &'static str,
+    /// What a line is.
+    pub(super) line: &'static str,
+    pub(super) columns: Vec<Column>,
+    pub(super) rows: Vec<Vec<Cell>>,
+}
+
+/// A column, described by name, meaning, unit and values.
+pub(super) fn column(name: &'static str, meaning: &str, unit: &'static str, values: &str) -> Column {
+    Column { name, meaning: meaning.to_owned(), unit, values: values.to_owned() }
+}
+
+impl Cell {
+    pub(super) fn text(text: impl Into<String>) -> Self {
+        Self::Text(text.into())
+    }
+
+    pub(super) fn count(count: usize) -> Self {
+        i64::try_from(count).map_or(Self::Empty, Self::Whole)
+    }
+
+    pub(super) fn yes(is: bool) -> Self {
+        Self::Whole(i64::from(is))
+    }
+
+    pub(super) fn number(value: Option<f64>, digits: usize) -> Self {
+        value.filter(|value| value.is_finite()).map_or(Self::Empty, |value| Self::Number(value, digits))
+    }
+
+    fn written(&self) -> String {
+        match self {
+            Self::Empty => String::new(),
+            Self::Whole(number) => number.to_string(),
+            Self::Number(number, digits) => format!("{number:.digits$}"),
+            Self::Text(text) => inert::cell(text),
+        }
+    }
+}
+
+impl Sheet {
+    pub(super) fn new(file: &'static str, line: &'static str, columns: Vec<Column>) -> Self {
+        Self { file, line, columns, rows: Vec::new() }
+    }
+
+    /// The file's text: a line of names, then a line for each row, each ended by CR and LF.
+    pub(super) fn csv(&self) -> String {
+        let mut text = self.columns.iter().map(|column| column.name).collect::<Vec<_>>().join(",");
+        text.push_str("\r\n");
+        for row in &self.rows {
+            let cells: Vec<String> = row.iter().map(Cell::written).collect();
+            // Writing to a text cannot fail.
+            let _ = write!(text, "{}\r\n", cells.join(","));
+        }
+        text
+    }
+}
+
+/// The meaning of every column of every file.
+pub(super) fn codebook(sheets: &[Sheet]) -> Sheet {
+    let columns = vec![
+        column("file", "the file", "", "a name"),
+        column("column", "the column", "", "a name"),
+        column("meaning", "what it says", "", "text"),
+        column("unit", "in what it is counted", "", "text; empty where there is no unit"),
+        column("values", "what it can be", "", "text"),
+    ];
+    let mut book = Sheet::new("codebook.csv", "a column of a file", columns);
+    for sheet in sheets {
+        for column in &sheet.columns {
+            let cells = [sheet.file, column.name, &column.meaning, column.unit, &column.values];
+            book.rows.push(cells.into_iter().map(Cell::text).collect());
+        }
+    }
+    book
+}

@@ -1,0 +1,184 @@
+use super::super::{Results, Strengths, results};
+use super::made::{START_MS, add_item, add_person, add_route, add_slot, empty, of_the_paper, small};
+use crate::{Answer, Choice, Data, Kind, Mode, Status};
+
+pub(super) fn of(data: &Data) -> Results {
+    results(data, START_MS + 3_600_000).unwrap()
+}
+
+/// The seed paper's own figures: 43.3, 83.3, 16.7 and 73.3 % of 30 people.
+#[test]
+fn the_papers_figures_have_the_intervals_that_its_thirty_people_allow() {
+    let results = of(&of_the_paper());
+    let row = &results.versions[0].rows[0];
+    let expected = [
+        ("similar_low", 43.3, [27.4, 60.8]),
+        ("accurate_high", 83.3, [66.4, 92.7]),
+        ("ghosts_any", 16.7, [7.3, 33.6]),
+        ("reachable_high", 73.3, [55.6, 85.8]),
+    ];
+    for (name, share, [low, high]) in expected {
+        let figure = &row.figures[name];
+        let interval = figure.interval.as_ref().unwrap();
+        let found = [figure.value, interval.low, interval.high].map(|value| (1000.0 * value).round() / 10.0);
+        assert_eq!(found, [share, low, high], "{name}");
+        assert_eq!(figure.method, wayword_metrics::Method::Wilson);
+        assert_eq!([figure.answers, figure.persons, figure.items], [30, 30, 30]);
+    }
+    let files = results.files().unwrap();
+    let markdown = &files.iter().find(|(name, _)| *name == "results.md").unwrap().1;
+    for shown in ["83.3 \\[66.4, 92.7\\]", "73.3 \\[55.6, 85.8\\]", "43.3 \\[27.4, 60.8\\]", "16.7 \\[7.3, 33.6\\]"] {
+        // Once of this study, once of the paper.
+        assert!(markdown.matches(shown).count() >= 2, "{shown}");
+    }
+}
+
+#[test]
+fn a_study_without_answers_can_be_read() {
+    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
+        let mut data = empty(mode, &[("ours", Kind::Run), ("humans", Kind::People)]);
+        let both: &[usize] = if mode == Mode::Pair { &[0, 1] } else { &[0] };
+        let route = add_route(&mut data);
+        add_item(&mut data, route, both);
+        for (name, text) in of(&data).files().unwrap() {
+            assert!(!text.contains("NaN") && !text.contains("inf,"), "{mode:?} {name}");
+            assert!(
+                name.ends_with(".csv")
+                    || text.contains("no answers yet")
+                    || name == "results.tex"
+                    || name == "results.json",
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn answers_of_those_who_were_screened_out_or_practised_are_in_no_figure() {
+    let mut data = small(Mode::Rate);
+    let before = of(&data).versions[0].answers;
+    let person = data.participants.iter().find(|one| one.status == Status::ScreenedOut).unwrap().id.clone();
+    add_slot(&mut data, &person, 0, Some(Answer::Rate { ratings: [1; 4] }));
+    let other = data.participants[0].id.clone();
+    add_slot(&mut data, &other, 11, Some(Answer::Rate { ratings: [1; 4] }));
+    data.slots.last_mut().unwrap().position = None;
+    assert_eq!(of(&data).versions[0].answers, before);
+}
+
+#[test]
+fn the_second_version_leaves_out_those_who_did_not_finish_or_failed() {
+    let results = of(&small(Mode::Rate));
+    let [everybody, finished] = &results.versions;
+    assert_eq!([everybody.persons, everybody.answers], [7, 36]);
+    assert_eq!([finished.persons, finished.answers], [4, 24]);
+    let people = &results.people;
+    assert_eq!([people.complete, people.quiet, people.live, people.withdrawn], [4, 1, 0, 1]);
+    assert_eq!([people.screened_out, people.attention_failed], [1, 1]);
+    assert_eq!(people.forgotten, 1);
+    assert_eq!(people.by_position[4].given, 6);
+    assert_eq!(people.by_position[4].answered, 5);
+    assert_eq!(people.attention.by_participant.len(), 1);
+    assert!(!people.attention.by_participant[0].is_over, "one of two in a study of more than five minutes");
+}
+
+#[test]
+fn walks_are_scored_from_the_start_to_the_goal() {
+    let mut data = empty(Mode::Follow, &[("ours", Kind::Run)]);
+    let route = add_route(&mut data);
+    let item = add_item(&mut data, route, &[0]);
+    // Stops one place short of the goal, or at it.
+    for looks in [0, 1] {
+        let person = add_person(&mut data, Status::Complete);
+        add_slot(
+            &mut data,
+            &person,
+            item,
+            Some(Answer::Follow { statements: [4, 5, 1], looks, stopped_ms: START_MS + 100_000 }),
+        );
+    }
+    let results = of(&data);
+    let figures = &results.versions[0].rows[0].figures;
+    assert_eq!(figures["success"].value, 1.0);
+    assert_eq!(figures["navigation_error_m"].value, 1.0);
+    assert_eq!(figures["length_m"].value, 7.0);
+    assert_eq!(figures["presses"].value, 4.0);
+    assert_eq!(figures["easy_high"].value, 1.0);
+    assert!(results.problems.is_empty());
+    data.slots[0].moves.remove(0);
+    assert!(of(&data).problems[0].contains("no edge"), "{:?}", of(&data).problems);
+}
+
+#[test]
+fn sides_are_turned_back_before_wins_are_counted() {
+    let mut data = empty(Mode::Pair, &[("ours", Kind::Run), ("humans", Kind::People)]);
+    let route = add_route(&mut data);
+    let item = add_item(&mut data, route, &[0, 1]);
+    for (is_turned, choice) in
+        [(false, Choice::B), (true, Choice::A), (true, Choice::Tie), (false, Choice::Bad), (true, Choice::B)]
+    {
+        let person = add_person(&mut data, Status::Complete);
+        add_slot(&mut data, &person, item, Some(Answer::Pair { choice }));
+        data.slots.last_mut().unwrap().is_turned = is_turned;
+    }
+    let results = of(&data);
+    let pairs = results.versions[0].pairs.as_ref().unwrap();
+    let row = &pairs.rows[0];
+    assert_eq!([row.first_wins, row.second_wins, row.ties, row.both_bad], [1, 2, 1, 1]);
+    assert_eq!(row.share.as_ref().unwrap().value, 0.4);
+    let figures = &results.versions[0].rows[1].figures;
+    assert_eq!(figures["gain"].value, 0.6);
+    assert_eq!(figures["both_bad"].value, 0.2);
+}
+
+#[test]
+fn where_strengths_cannot_be_known_the_reason_is_told() {
+    let mut data = small(Mode::Pair);
+    for slot in &mut data.slots {
+        if slot.answer.is_some() {
+            slot.answer = Some(Answer::Pair { choice: Choice::Tie });
+        }
+    }
+    let results = of(&data);
+    let Strengths::Unknown { why, .. } = &results.versions[0].pairs.as_ref().unwrap().strengths else {
+        panic!("all are ties")
+    };
+    let files = results.files().unwrap();
+    assert!(files[1].1.contains(why.as_str()), "{why}");
+}
+
+#[test]
+fn one_participant_and_one_condition_are_enough_for_files() {
+    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
+        let mut data = small(mode);
+        let person = data.participants[0].id.clone();
+        data.slots.retain(|slot| slot.participant == person);
+        data.participants.truncate(1);
+        for (name, text) in of(&data).files().unwrap() {
+            assert!(!text.contains("NaN"), "{mode:?} {name}");
+        }
+        if mode != Mode::Pair {
+            data.plan.conditions.truncate(1);
+            let results = of(&data);
+            assert!(results.versions[0].differences.is_empty());
+            results.files().unwrap();
+        }
+    }
+}
+
+#[test]
+fn intervals_stay_on_the_scale() {
+    for mode in [Mode::Follow, Mode::Rate] {
+        let results = of(&small(mode));
+        for version in &results.versions {
+            for (row, measure) in
+                version.rows.iter().flat_map(|row| results.measures.iter().map(move |measure| (row, measure)))
+            {
+                let Some(figure) = row.figures.get(measure.name) else { continue };
+                let Some(interval) = &figure.interval else { continue };
+                assert!(interval.low <= figure.value && figure.value <= interval.high, "{} {figure:?}", measure.name);
+                assert!(measure.range[0].is_none_or(|low| low <= interval.low), "{} {figure:?}", measure.name);
+                assert!(measure.range[1].is_none_or(|high| high >= interval.high), "{} {figure:?}", measure.name);
+            }
+        }
+    }
+}
