@@ -45,4 +45,4 @@ pub const QUESTIONS: [Scale; 4] = [
 ];
 
 /// The levels of an attention check.
-pub const AGREEMENT_LEVELS: [&str; 5] = AGREEMENT;
+pub(crate) const AGREEMENT_LEVELS: [&str; 5] = AGREEMENT;

@@ -216,7 +216,7 @@ fn every_answer_has_its_headers() {
         let header = |name: &str| answer.headers.get(name).cloned().unwrap_or_default();
         assert!(header("content-security-policy").starts_with("default-src 'none'"), "{answer:?}");
         assert_eq!((header("x-content-type-options"), header("cache-control")), ("nosniff".into(), "no-store".into()));
-        assert_eq!((header("referrer-policy"), header("x-frame-options")), ("no-referrer".into(), "DENY".into()));
+        assert_eq!((header("referrer-policy"), header("x-frame-options")), ("same-origin".into(), "DENY".into()));
         assert!(header("location") == "/" || header("location").is_empty(), "{answer:?}");
         assert!(header("strict-transport-security").is_empty(), "there is no TLS here");
     }

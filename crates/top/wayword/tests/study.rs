@@ -133,7 +133,10 @@ impl Browser {
         let slot = self.field("slot");
         match self.name() {
             "consent" => self.post("/consent", "agree=yes"),
-            "understood" => self.post("/understood", &format!("try={}&{}", self.field("try"), RIGHT)),
+            "understood" => {
+                let right = if self.page.contains("film") || self.page.contains("watch") { RATING } else { WALKING };
+                self.post("/understood", &format!("try={}&{right}", self.field("try")));
+            }
             "follow" => {
                 let seq: usize = self.field("seq").parse().unwrap();
                 if seq < steps {
@@ -158,8 +161,9 @@ impl Browser {
     }
 }
 
-/// The right answers to the questions about walking.
-const RIGHT: &str = "q0=1&q1=0";
+/// The right answers to the questions about walking, and about rating.
+const WALKING: &str = "q0=1&q1=0";
+const RATING: &str = "q0=2&q1=0";
 const LEVELS: [&str; 5] = ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
 
 fn wayword(folder: &Path, args: &[&str]) -> Ran {
@@ -228,6 +232,82 @@ fn people_walk_through_kills_and_their_walks_are_scored() {
     assert!(status["rows"].as_array().unwrap().iter().all(|row| row["answered"] == 2), "{status}");
     let page = fs_text(&study.join("study.db"));
     assert!(!page.contains(links[0].trim_start_matches("/t/")), "a token stands in the database");
+}
+
+#[test]
+fn answers_become_tables_and_can_be_forgotten() {
+    let folder = houses();
+    let folder = folder.path();
+    let make = [
+        "study",
+        "new",
+        "--run",
+        "ours=run#r2r",
+        "--include",
+        "other-path",
+        "--mode",
+        "rate",
+        "--items",
+        "2",
+        "--per-item",
+        "2",
+    ];
+    wayword(folder, &[&make[..], &["--out", "study"]].concat());
+    let site = Site::of(&folder.join("study"), "3");
+    for link in &site.links[..2] {
+        let mut person = Browser::at(&site);
+        person.get(link);
+        while person.go_on(0) {}
+    }
+    let mut leaves = Browser::at(&site);
+    leaves.get(&site.links[2]);
+    leaves.post("/consent", "agree=yes");
+    leaves.send("POST", "/withdraw", "delete=yes");
+    assert!(leaves.page.contains("deleted"), "{}", leaves.page);
+    drop(site);
+    let planned = wayword(folder, &["study", "plan", "study"]).out;
+    assert!(planned.contains("participants"), "{planned}");
+    let written = wayword(folder, &["study", "results", "study", "--out", "tables", "--json"]).json();
+    assert_eq!(written["answers"], 4, "{written}");
+    let answers = fs_text(&folder.join("tables/answers.csv"));
+    assert!(answers.contains("'=cmd() <script>"), "{answers}");
+    let page = fs_text(&folder.join("tables/index.html"));
+    assert!(page.contains("ours") && !page.contains("<script"), "no script");
+    let status = wayword(folder, &["study", "status", "study", "--participants", "--json"]).json();
+    assert_eq!(
+        (status["forgotten"].as_u64(), status["participants"]["complete"].as_u64()),
+        (Some(1), Some(2)),
+        "{status}"
+    );
+    let id = status["list"][0]["id"].as_str().unwrap();
+    let dry = wayword(folder, &["study", "forget", "study", "--participant", id, "--dry-run"]).out;
+    assert!(dry.contains("would remove") && dry.contains("tables"), "{dry}");
+    wayword(folder, &["study", "forget", "study", "--participant", id]);
+    wayword(folder, &["study", "close", "study"]);
+    let status = wayword(folder, &["study", "status", "study"]).out;
+    assert!(
+        status.starts_with("closed") && status.contains("2 forgotten") && status.contains("1 complete"),
+        "{status}"
+    );
+}
+
+#[test]
+fn pictures_of_others_need_the_right_and_a_recording_is_not_walked() {
+    let building = common::Building::new();
+    building.run_over_episodes("run");
+    let new = |args: &[&str]| {
+        building.wayword(&[&["study", "new", "--run", "ours=run#r2r", "--out", "study"], args].concat())
+    };
+    let refused = new(&["--mode", "rate", "--platform", "matterport", "--data", "data"]);
+    assert!(refused.refused().contains("--i-have-the-right"));
+    let refused = new(&["--mode", "follow", "--platform", "recording", "--data", "data"]);
+    assert_eq!(refused.code, Some(1), "{refused:?}");
+    let refused = new(&["--mode", "pair"]);
+    assert!(refused.refused().contains("one condition"), "{refused:?}");
+    let refused = new(&["--mode", "rate", "--include", "people"]);
+    assert!(refused.refused().contains("--episodes"), "{refused:?}");
+    assert!(building.wayword(&["study", "serve", "nowhere"]).refused().contains("study new"));
+    assert!(!building.path("study/plan.json").exists());
 }
 
 fn fs_text(file: &Path) -> String {

@@ -23,8 +23,9 @@ pub(super) fn headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)> {
     let mut all = vec![
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
         (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
-        // The address by which a participant came names the participant.
-        (header::REFERRER_POLICY, HeaderValue::from_static("no-referrer")),
+        // The address by which a participant came names the participant: no other site hears of it. Not `no-referrer`, with which
+        // browsers send forms without an origin.
+        (header::REFERRER_POLICY, HeaderValue::from_static("same-origin")),
         (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
         (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
         (HeaderName::from_static("cross-origin-opener-policy"), HeaderValue::from_static("same-origin")),
