@@ -7,8 +7,10 @@ use std::{
     time::Instant,
 };
 
-/// Requests of a participant: so many at once, and so many for each second after that. A walker's pictures count too.
+/// Requests of a participant: so many at once, and so many for each second after that.
 const OF_PERSON: Rate = Rate { at_once: 120.0, each_second: 20.0 };
+/// Pictures of a participant: a page without script shows a whole film at once.
+const OF_PICTURES: Rate = Rate { at_once: 600.0, each_second: 60.0 };
 /// Requests of everybody who has no session.
 const OF_STRANGERS: Rate = Rate { at_once: 600.0, each_second: 100.0 };
 /// Most participants whose rate is remembered.
@@ -58,6 +60,27 @@ pub(super) fn changes(method: &Method) -> bool {
     !matches!(*method, Method::GET | Method::HEAD)
 }
 
+/// Whose pace it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Asker {
+    /// A participant.
+    Person(i64),
+    /// A participant's pictures.
+    Pictures(i64),
+    /// Everybody who has no session.
+    Stranger,
+}
+
+impl Asker {
+    fn rate(self) -> Rate {
+        match self {
+            Self::Person(_) => OF_PERSON,
+            Self::Pictures(_) => OF_PICTURES,
+            Self::Stranger => OF_STRANGERS,
+        }
+    }
+}
+
 /// How fast one may ask.
 #[derive(Debug, Clone, Copy)]
 struct Rate {
@@ -69,7 +92,7 @@ struct Rate {
 #[derive(Debug)]
 pub(super) struct Pace {
     began: Instant,
-    buckets: Mutex<HashMap<Option<i64>, Bucket>>,
+    buckets: Mutex<HashMap<Asker, Bucket>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -83,20 +106,20 @@ impl Pace {
         Self { began: Instant::now(), buckets: Mutex::default() }
     }
 
-    /// Whether a participant, or a stranger, may ask now.
-    pub(super) fn allows(&self, person: Option<i64>) -> bool {
-        self.allows_at(person, self.began.elapsed().as_secs_f64())
+    /// Whether somebody may ask now.
+    pub(super) fn allows(&self, asker: Asker) -> bool {
+        self.allows_at(asker, self.began.elapsed().as_secs_f64())
     }
 
-    fn allows_at(&self, person: Option<i64>, now_s: f64) -> bool {
-        let rate = if person.is_some() { OF_PERSON } else { OF_STRANGERS };
+    fn allows_at(&self, asker: Asker, now_s: f64) -> bool {
+        let rate = asker.rate();
         let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
         if buckets.len() >= REMEMBERED {
             // Whoever has been quiet long enough to be full again need not be remembered.
-            let full_after_s = OF_PERSON.at_once / OF_PERSON.each_second;
+            let full_after_s = OF_PICTURES.at_once / OF_PICTURES.each_second;
             buckets.retain(|_, bucket| now_s - bucket.at_s < full_after_s);
         }
-        let bucket = buckets.entry(person).or_insert(Bucket { left: rate.at_once, at_s: now_s });
+        let bucket = buckets.entry(asker).or_insert(Bucket { left: rate.at_once, at_s: now_s });
         bucket.left = (bucket.left + (now_s - bucket.at_s) * rate.each_second).min(rate.at_once);
         bucket.at_s = now_s;
         let is_allowed = bucket.left >= 1.0;
@@ -133,17 +156,17 @@ mod tests {
     #[test]
     fn who_asks_too_fast_waits_and_nobody_else_does() {
         let pace = Pace::new();
-        let asked = (0..200).filter(|_| pace.allows_at(Some(1), 0.0)).count();
+        let asked = (0..200).filter(|_| pace.allows_at(Asker::Person(1), 0.0)).count();
         assert_eq!(asked, 120);
-        assert!(pace.allows_at(Some(2), 0.0) && pace.allows_at(None, 0.0));
-        assert_eq!((0..200).filter(|_| pace.allows_at(Some(1), 1.0)).count(), 20);
+        assert!(pace.allows_at(Asker::Person(2), 0.0) && pace.allows_at(Asker::Stranger, 0.0));
+        assert_eq!((0..200).filter(|_| pace.allows_at(Asker::Person(1), 1.0)).count(), 20);
     }
 
     #[test]
     fn memory_of_the_pace_is_bounded() {
         let pace = Pace::new();
         for person in 0..100_000 {
-            pace.allows_at(Some(person), f64::from(u32::try_from(person).unwrap()));
+            pace.allows_at(Asker::Person(person), f64::from(u32::try_from(person).unwrap()));
         }
         assert!(pace.buckets.lock().unwrap().len() <= REMEMBERED);
     }

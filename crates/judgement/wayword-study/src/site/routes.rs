@@ -4,7 +4,7 @@ use super::{
     cookies::Cookies,
     desk::{Busy, Desk},
     forms::{self, Fields},
-    gate::{self, Pace},
+    gate::{self, Asker, Pace},
     pages::{Around, Page, Pages, consent_version, mark, refused},
 };
 use crate::{
@@ -84,7 +84,7 @@ async fn guard(State(site): Shared, request: Request, next: Next) -> Response {
         }
     };
     for (name, value) in gate::headers(site.cookies.is_secure) {
-        response.headers_mut().insert(name, value);
+        response.headers_mut().entry(name).or_insert(value);
     }
     response
 }
@@ -195,15 +195,21 @@ fn ended(result: Result<Response, Problem>, site: &Site) -> Response {
 
 /// Who asks; strangers and participants each have their pace.
 async fn who(site: &Site, headers: &HeaderMap) -> Result<Option<(i64, String)>, Problem> {
+    let found = known(site, headers).await?;
+    let asker = found.as_ref().map_or(Asker::Stranger, |(person, _)| Asker::Person(*person));
+    if site.pace.allows(asker) { Ok(found) } else { Err(Problem::Fast) }
+}
+
+/// Whose session it is.
+async fn known(site: &Site, headers: &HeaderMap) -> Result<Option<(i64, String)>, Problem> {
     let session = site.cookies.session(headers).filter(|session| is_token(session));
-    let found = match session {
+    Ok(match session {
         Some(session) => {
             let asked = session.clone();
             site.desk.ask(move |book| book.whose(&asked)).await?.map(|person| (person, session))
         }
         None => None,
-    };
-    if site.pace.allows(found.as_ref().map(|(person, _)| *person)) { Ok(found) } else { Err(Problem::Fast) }
+    })
 }
 
 async fn person(site: &Site, headers: &HeaderMap) -> Result<(i64, Around), Problem> {
@@ -258,7 +264,7 @@ fn entered(site: &Site, entry: Entry) -> Response {
 }
 
 async fn arrive(site: &Site, arrival: Arrival) -> Result<Response, Problem> {
-    if !site.pace.allows(None) {
+    if !site.pace.allows(Asker::Stranger) {
         return Err(Problem::Fast);
     }
     let asked = arrival.clone();
@@ -419,10 +425,18 @@ async fn picture(
     find: impl FnOnce(&Book<'_>, i64, usize) -> Result<Option<String>, StudyError> + Send + 'static,
 ) -> Result<Response, Problem> {
     let number = file.strip_suffix(".jpg").and_then(|number| number.parse().ok()).ok_or(Problem::Missing)?;
-    let (person, _) = person(site, headers).await?;
+    let (person, _) = known(site, headers).await?.ok_or(Problem::NoSession)?;
+    if !site.pace.allows(Asker::Pictures(person)) {
+        return Err(Problem::Fast);
+    }
     let name = site.desk.ask(move |book| find(book, person, number)).await?.ok_or(Problem::Missing)?;
     let path = site.study.pictures().join(name);
     let bytes = tokio::task::spawn_blocking(move || std::fs::read(path)).await;
     let bytes = bytes.ok().and_then(Result::ok).ok_or(Problem::Fault)?;
-    Ok(([(header::CONTENT_TYPE, HeaderValue::from_static("image/jpeg"))], Body::from(bytes)).into_response())
+    let headers = [
+        (header::CONTENT_TYPE, HeaderValue::from_static("image/jpeg")),
+        // A phone need not load a film twice. The address names nothing but a slot of this person's.
+        (header::CACHE_CONTROL, HeaderValue::from_static("private, max-age=3600")),
+    ];
+    Ok((headers, Body::from(bytes)).into_response())
 }

@@ -23,8 +23,10 @@ use wayword_study::{Picture, Place, Scene};
 
 /// Width of a panorama, pixels: a phone shows a third of it, a desk's screen half.
 const PANORAMA_PX: u32 = 2400;
-/// Places between two frames of a film, on platforms that can draw there.
+/// Most places between two frames of a film, on platforms that can draw there.
 const BETWEEN: usize = 5;
+/// About how many pictures a film has: half a minute at two for each second.
+const FILM: usize = 60;
 /// Turned more than this since the last picture, radians.
 const TURNED_RAD: f64 = 0.15;
 
@@ -103,7 +105,8 @@ fn place(
 pub(super) fn film(walk: &Walk, platform: &dyn Platform, folder: &FilePath) -> Result<Vec<Picture>, Error> {
     interrupt::check()?;
     let draws_anywhere = matches!(platform.name(), "house" | "habitat") && walk.path.motion.is_known();
-    let steps = steps(&walk.path, if draws_anywhere { BETWEEN } else { 0 })?;
+    let between = (FILM / walk.path.frames.len().max(1)).saturating_sub(1).min(BETWEEN);
+    let steps = steps(&walk.path, if draws_anywhere { between } else { 0 })?;
     let picture = |(number, step): (usize, &Step)| {
         let name = file_name(&["film", walk.path.scene.as_str(), &walk.name, &number.to_string()]);
         let file = folder.join(&name);
