@@ -26,6 +26,26 @@ class Broken(Exception):
     """The connection went away before the answer was whole."""
 
 
+class Faults:
+    """Kinds of faults, how often each was seen, and one example."""
+
+    def __init__(self):
+        self.seen: dict[str, list] = {}
+
+    def add(self, kind: str, example: str = "") -> None:
+        self.seen.setdefault(kind, [0, example])[0] += 1
+
+    def take(self, others: "Faults") -> None:
+        for kind, (number, example) in others.seen.items():
+            self.seen.setdefault(kind, [0, example])[0] += number
+
+    def report(self) -> bool:
+        for kind, (number, example) in sorted(self.seen.items(), key=lambda pair: -pair[1][0]):
+            print(f"FAULT  {number} x {kind}" + (f"; the first: {example}" if example else ""))
+        print("all is well" if not self.seen else f"{len(self.seen)} kinds of faults")
+        return not self.seen
+
+
 # ---- The study
 
 
@@ -237,7 +257,7 @@ class Browser:
                 self.cookies[key] = value
             else:
                 self.cookies.pop(key, None)
-        self.log.asked(kind, reply)
+        self.log.asked("full" if reply.status == 503 and b"All places" in reply.body else kind, reply)
         return reply
 
     async def follow(self, reply: Reply) -> Reply:
@@ -379,7 +399,7 @@ class Ledger:
     def acknowledged(self) -> int:
         return sum(1 for all_sent in self.sent.values() if any(one.acknowledged for one in all_sent))
 
-    def check(self, facts: Facts) -> tuple[dict[str, int], list[str]]:
+    def check(self, facts: Facts) -> tuple[dict[str, int], "Faults"]:
         """Everything acknowledged must be there once, with what was acknowledged first, and nothing that nobody sent."""
         db = facts.database()
         db.row_factory = sqlite3.Row
@@ -387,7 +407,7 @@ class Ledger:
         slots = {row["name"]: row for row in db.execute("SELECT * FROM slot")}
         attention = {(pids.get(row["person"]), str(row["number"])): row for row in db.execute("SELECT * FROM attention")}
         moves = {(row["slot"], row["seq"]): row["viewpoint"] for row in db.execute("SELECT * FROM move")}
-        counts, wrong = {}, []
+        counts, wrong = {}, Faults()
         ended = {}  # a step that arrives after the end of its walk is nothing
         for key, all_sent in self.sent.items():
             times = [one.acknowledged for one in all_sent if one.acknowledged]
@@ -395,7 +415,7 @@ class Ledger:
                 ended[key[1]] = min(times + [ended.get(key[1], times[0])])
         for key, all_sent in sorted(self.sent.items(), key=str):
             times = [one.acknowledged for one in all_sent if one.acknowledged]
-            action = key[0]
+            action, hows = key[0], ", ".join(sorted({one.how for one in all_sent}))
             if action == "/attention":
                 row = attention.get((key[1], key[2]))
                 kept = None if row is None else str(bool(row["passed"]))
@@ -403,7 +423,7 @@ class Ledger:
             else:
                 row = slots.get(key[1])
                 if row is not None and pids.get(row["person"]) != all_sent[0].fields["pid"]:
-                    wrong.append(f"{action}: slot {key[1]} is somebody else's")
+                    wrong.add(f"{action}: a slot is somebody else's", key[1])
                 kept, value = self.stored(facts, row, moves, action, key)
             if not times:
                 counts[f"{action} not acknowledged"] = counts.get(f"{action} not acknowledged", 0) + 1
@@ -412,25 +432,25 @@ class Ledger:
                 if kept is None:
                     if action == "/move" and all_sent[0].first >= ended.get(key[1], 1e18):
                         continue
-                    wrong.append(f"{action} {key[1:]}: acknowledged and not there ({', '.join(sorted({one.how for one in all_sent}))})")
+                    wrong.add(f"{action}: acknowledged and not there ({hows})", str(key[1:]))
                     continue
             if kept is not None:
                 first = min(times) if times else 1e18
                 may = [one for one in all_sent if one.first <= first]
                 if kept not in [value(one) for one in may]:
                     how = ", ".join(f"{value(one)} by {one.how} at {one.first:.3f}, {'acknowledged' if one.acknowledged else 'not acknowledged'}" for one in all_sent)
-                    wrong.append(f"{action} {key[1:]}: kept {kept}, sent {how}")
+                    wrong.add(f"{action}: acknowledged, and another one is kept ({hows})", f"{key[1:]}: kept {kept}, sent {how}")
         answered = {name for name, row in slots.items() if row["answer"] is not None}
         unsent = answered - {key[1] for key in self.sent if key[0] == "/answer"}
         if unsent:
-            wrong.append(f"{len(unsent)} answers that nobody sent")
+            wrong.add("answers that nobody sent", str(len(unsent)))
         for what in ("item", "route"):
             twice = db.execute(f"SELECT count(*) FROM (SELECT 1 FROM slot GROUP BY person, {what} HAVING count(*) > 1)").fetchone()[0]
             if twice:
-                wrong.append(f"{twice} times somebody has the same {what} twice")
+                wrong.add(f"somebody has the same {what} twice", f"{twice} times")
         for problem in db.execute("PRAGMA integrity_check"):
             if problem[0] != "ok":
-                wrong.append(f"integrity_check: {problem[0]}")
+                wrong.add("integrity_check", problem[0])
         db.close()
         return counts, wrong
 
@@ -549,3 +569,11 @@ class Site:
 
 def share(values: list[float], part: float) -> float:
     return sorted(values)[min(len(values) - 1, int(len(values) * part))] if values else float("nan")
+
+
+def write_through(file) -> float:
+    """Seconds for a small write to the disk. The file is not buffered."""
+    before = time.monotonic()
+    file.write(bytes(4096))
+    os.fsync(file.fileno())
+    return time.monotonic() - before

@@ -10,7 +10,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from client import Browser, Facts, Page, Participant, Server, Site, copy_study, share
+from client import Browser, Facts, Faults, Page, Participant, Server, Site, copy_study, share, write_through
 
 # What one person in five does instead of going straight on.
 TROUBLE = ["vanish", "reload", "back", "twice", "device", "tab"]
@@ -27,13 +27,13 @@ class Trial:
         self.next, self.is_full = 0, False
         self.ends: dict[str, int] = {}
         self.behaviours: dict[str, int] = {}
-        self.faults: list[str] = []
+        self.faults = Faults()
         self.lags: list[float] = []
         self.disks: list[float] = []
         self.samples: list[tuple[int, int, int]] = []
         self.worst = (0, 0, 0)
         self.server_cpu_s = 0.0
-        self.total, self.lost_their_way = 0, 0
+        self.total = 0
         self.here: set[Participant] = set()
 
     # ---- participants
@@ -73,19 +73,19 @@ class Trial:
                         return "no place"
                     await asyncio.sleep(rng.uniform(1, 3))
                 elif page.status == 403:
-                    self.faults.append(f"a participant ({behaviour}) is not known any more: {page.text[page.text.find('<h1'):][:120]!r}")
+                    self.faults.add(f"a participant ({behaviour}) is not known any more", page.text[page.text.find("<h1") :][:120])
                     return "not known"
                 was_full = page.status == 503
                 page = await participant.open("/")  # where the page's button leads
                 if was_full and page.status == 200 and page.name == "message":
-                    self.lost_their_way += 1
+                    self.faults.add("\"Try again\" on the page of a full study leads to a page that knows no study")
                     page = await participant.open(participant.link)
                 continue
             is_item = page.name in ITEMS
             seen += is_item
             filled = participant.fill(page, is_wrong and page.at == "0")
             if filled is None:
-                self.faults.append(f"a page without a form: {page.name!r} {page.status}")
+                self.faults.add("a page without a form", f"{page.name!r} {page.status}")
                 return "stuck"
             if is_item and behaviour != "steady" and rng.random() < 0.4:
                 if behaviour == "vanish" and seen > 1:
@@ -102,7 +102,7 @@ class Trial:
         if behaviour == "reload":
             again = await participant.open("/")
             if (again.name, again.at) != (page.name, page.at):
-                self.faults.append(f"after a reload {again.name} {again.at} instead of {page.name} {page.at}")
+                self.faults.add("after a reload another page", f"{again.name} {again.at} instead of {page.name} {page.at}")
             return await participant.submit(participant.fill(again))
         if behaviour == "back" and old:
             action, fields = rng.choice(old)
@@ -163,7 +163,7 @@ class Trial:
                 if over > self.worst[0]:
                     self.worst = (over, late, item)
                 if over > late:
-                    self.faults.append(f"item {item}: {answered} answered and {live} live, {per_item} wanted, and {late} answers after the lease")
+                    self.faults.add("answered and live exceed --per-item by more than the leases that had ended", f"item {item}: {answered} answered, {live} live, {late} after the lease")
             self.total = sum(row[1] for row in rows)
             self.samples.append((self.total, sum(row[2] for row in rows), sum(row[3] + row[4] for row in rows)))
             if sum(min(row[1], per_item) for row in rows) >= self.site.facts.demand:
@@ -192,16 +192,9 @@ class Trial:
     async def disk(self) -> None:
         """How long the disk takes for a small write beside the database: an acknowledgement cannot be faster."""
         with open(self.site.facts.folder.parent / "probe", "wb", buffering=0) as file:
-
-            def probe() -> float:
-                before = time.monotonic()
-                file.write(bytes(4096))
-                os.fsync(file.fileno())
-                return time.monotonic() - before
-
             while True:
                 await asyncio.sleep(0.5)
-                self.disks.append(await asyncio.to_thread(probe))
+                self.disks.append(await asyncio.to_thread(write_through, file))
 
     async def run(self) -> float:
         began = time.monotonic()
@@ -209,12 +202,12 @@ class Trial:
         seats = [asyncio.create_task(self.seat()) for _ in range(self.options.people)]
         _, unfinished = await asyncio.wait(seats, timeout=self.options.limit * 60)
         if unfinished:
-            self.faults.append(f"{len(unfinished)} of {len(seats)} participants were still there after {self.options.limit} minutes: {', '.join(sorted(one.place for one in self.here))[:300]}")
+            self.faults.add(f"participants were still there after {self.options.limit} minutes", ', '.join(sorted(one.place for one in self.here))[:300])
         for task in [*unfinished, *around]:
             task.cancel()
         for result in await asyncio.gather(*seats, *around, return_exceptions=True):
             if isinstance(result, BaseException) and not isinstance(result, asyncio.CancelledError):
-                self.faults.append(f"the trial itself failed: {result!r}")
+                self.faults.add("the trial itself failed", repr(result))
         return time.monotonic() - began
 
     # ---- what came of it
@@ -226,22 +219,20 @@ class Trial:
     def report(self, took_s: float) -> bool:
         log, facts = self.site.log, self.site.facts
         counts, wrong = self.site.ledger.check(facts)
-        wrong = self.faults + wrong
-        if self.lost_their_way:
-            wrong.append(f"{self.lost_their_way} times \"Try again\" on the page of a full study led to a page that knows no study")
+        wrong.take(self.faults)
         if len(self.server.kills) < self.options.kills:
-            wrong.append(f"the server was killed {len(self.server.kills)} times instead of {self.options.kills}: give more --minutes")
+            wrong.add(f"the server was killed {len(self.server.kills)} times instead of {self.options.kills}: give more --minutes")
         per_item = {item: 0 for item in facts.counted} | {row[0]: row[1] for row in self.counts()}
         late = sum(row[4] for row in self.counts())
         few, many = min(per_item.values()), max(per_item.values())
-        if many - few > 1:
-            wrong.append(f"answers per item differ by more than one: {few} to {many} ({late} after the lease)")
+        if many - few > 1 and not self.options.late:
+            wrong.add(f"answers per item differ by more than one: {few} to {many} ({late} after the lease)")
         if few < facts.per_item:
-            wrong.append(f"an item has {few} answers of {facts.per_item}")
+            wrong.add(f"an item has {few} answers of {facts.per_item}")
         honest = ("steady", "reload", "twice", "vanish")
         for (behaviour, action, status), number in sorted(self.site.refusals.items()):
             if behaviour in honest:
-                wrong.append(f"{number} times {status} to {action} of participants who did nothing wrong ({behaviour})")
+                wrong.add(f"{status} to {action} of participants who did nothing wrong ({behaviour})", f"{number} times")
 
         print(f"mode {facts.mode}, {len(facts.counted)} items x {facts.per_item} answers, {facts.plan['per_participant']} per participant, lease {self.options.lease} s")
         print(f"{self.next} participants came, {self.options.people} at once; {took_s:.0f} s; {len(self.server.kills)} kills; load of the machine {os.getloadavg()[0]:.1f}")
@@ -257,7 +248,7 @@ class Trial:
             if times:
                 row(name, times)
                 if name == "writes" and share(times, 0.95) >= LIMIT_MS:
-                    wrong.append(f"p95 of writes is {share(times, 0.95):.0f} ms, and {LIMIT_MS} ms is the limit")
+                    wrong.add(f"p95 of writes is {share(times, 0.95):.0f} ms, and {LIMIT_MS} ms is the limit")
         row("lag of this program", [lag * 1000 for lag in self.lags])
         row("4 KiB to disk, alone", [disk * 1000 for disk in self.disks])
         inside = [(got - sent) * 1000 for kind, status, sent, got in log.asks if kind in WRITES and status == 303 and not self.outside(sent, got)]
@@ -271,23 +262,19 @@ class Trial:
             row("kill to first answer", back)
         busy = {}
         for kind, status, sent, got in log.asks:
-            if status >= 429:
+            if status >= 429 and kind != "full":
                 where = "outside" if self.outside(sent, got) else "near a kill"
                 busy[f"{status} {where}"] = busy.get(f"{status} {where}", 0) + 1
         for _, at in log.failures:
             where = "outside" if self.outside(at, at) else "near a kill"
             busy[f"no connection, {where}"] = busy.get(f"no connection, {where}", 0) + 1
         table("not answered at once", busy)
+        print(f"pages that say that all places are taken: {sum(1 for ask in log.asks if ask[0] == 'full')}")
         writes = sum(1 for kind, status, _, _ in log.asks if kind in WRITES and status == 303)
         cpu = self.server_cpu_s
         print(f"\n{len(log.asks) / took_s:.0f} requests and {writes / took_s:.0f} acknowledged writes per second; server {cpu / took_s:.2f} cores, this program {time.process_time() / took_s:.2f}")
         print(f"answers per item {few} to {many} of {facts.per_item}; answered after the lease: {late}; samples: {len(self.samples)}; most over --per-item: {self.worst[0]} (after the lease there: {self.worst[1]})")
-        for what in wrong[:30]:
-            print(f"FAULT  {what}")
-        if len(wrong) > 30:
-            print(f"FAULT  ... and {len(wrong) - 30} more")
-        print("all is well" if not wrong else f"{len(wrong)} faults")
-        return not wrong
+        return wrong.report()
 
 
 def row(name: str, times: list[float]) -> None:
