@@ -204,6 +204,8 @@ class Connection(asyncio.Protocol):
             self.waiting.set_exception(Broken())
 
     async def ask(self, request: bytes, limit_s: float) -> Reply:
+        if not self.is_open:  # it went away before anything was asked
+            raise Broken()
         loop = asyncio.get_running_loop()
         self.waiting, self.used, self.buffer = loop.create_future(), self.used + 1, b""
         late = loop.call_later(limit_s, self.transport.abort)
@@ -294,7 +296,7 @@ FORM = re.compile(r'<form[^>]*\baction="([^"]*)"[^>]*>(.*?)</form>', re.S)
 FIELD = re.compile(r"<(input|button|textarea|legend)\b([^>]*)>([^<]*)")
 ATTRIBUTE = re.compile(r'([a-z-]+)="([^"]*)"')
 LABEL = re.compile(r'<input type="radio" name="choice" value="(\d)"[^>]*>\s*<span>([^<]*)</span>')
-PICTURE = re.compile(r'<img[^>]*\bsrc="(/(?:film|look)/[^"]*)"')
+PICTURE = re.compile(r'<img[^>]*\bsrc="([^"]*)"')
 
 
 @dataclass(slots=True)
@@ -335,7 +337,7 @@ class Page:
                 else:
                     form.hidden[name] = value
         picture = PICTURE.search(text)
-        self.picture = picture[1] if picture else None
+        self.picture = html.unescape(picture[1]) if picture else None
 
     def filled(self, facts: Facts, rng: random.Random, own_text: str | None = None, is_wrong: bool = False) -> tuple[str, dict[str, str]] | None:
         """The form that one would send from here, filled in."""

@@ -651,7 +651,7 @@ class Hostile:
         db = facts.database()
         kept = {text for (text,) in db.execute("SELECT own_text FROM slot WHERE own_text IS NOT NULL")}
         db.close()
-        cells = 0
+        cells, found = 0, 0
         for path in files:
             text = path.read_bytes().decode("utf-8")
             if path.suffix == ".html":
@@ -662,6 +662,7 @@ class Hostile:
                 for row in csv.reader(text.splitlines(keepends=True)):
                     for cell in row:
                         cells += 1
+                        found += MARK in cell
                         if cell[:1] in ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20") and not is_number(cell):
                             self.fault(f"{path.name}: a cell begins like a formula", repr(cell[:40]))
                         if re.search("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\u202a-\u202e\u2066-\u2069]", cell):
@@ -681,7 +682,9 @@ class Hostile:
             data = path.read_bytes()
             if any(pid.encode() in data for pid in pids):
                 self.fault(f"{path.name}: a recruiter's id")
-        self.inert_text = f"{len(kept)} texts of participants; {len(files)} files of results, {cells} cells"
+        if not found:
+            self.fault("no file of results holds the texts of participants: nothing was tested")
+        self.inert_text = f"{len(kept)} texts of participants; {len(files)} files of results, {cells} cells, {found} of them with script"
 
     def report(self) -> bool:
         if max(self.rss, default=0) - self.rss_before > RSS_MIB:

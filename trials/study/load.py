@@ -202,7 +202,7 @@ class Trial:
         seats = [asyncio.create_task(self.seat()) for _ in range(self.options.people)]
         _, unfinished = await asyncio.wait(seats, timeout=self.options.limit * 60)
         if unfinished:
-            self.faults.add(f"participants were still there after {self.options.limit} minutes", ', '.join(sorted(one.place for one in self.here))[:300])
+            self.faults.add(f"participants were still there after {self.options.limit} minutes", ", ".join(sorted(one.place for one in self.here))[:300])
         for task in [*unfinished, *around]:
             task.cancel()
         for result in await asyncio.gather(*seats, *around, return_exceptions=True):
