@@ -23,7 +23,7 @@ impl Study {
     /// # Errors
     /// When the database cannot be read.
     pub fn progress(&self) -> Result<Progress, StudyError> {
-        self.transact(|book| book.progress())
+        Store::open(&self.database())?.read(self, now_ms(), |book| book.progress())
     }
 
     /// Makes personal links. Each is for one participant.
@@ -51,6 +51,7 @@ impl Study {
             let problem = format!("{live} participants are in the middle of it, and could not go on");
             return Err(StudyError::refused(problem, "wait until they are done, or give --even-if-live"));
         }
+        Store::open(&self.database())?.sweep();
         Ok(())
     }
 
@@ -60,7 +61,9 @@ impl Study {
     /// # Errors
     /// When there is no such participant, or the database cannot be written.
     pub fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
-        self.transact(|book| book.forget(participant, is_dry))
+        let forgotten = self.transact(|book| book.forget(participant, is_dry))?;
+        Store::open(&self.database())?.sweep();
+        Ok(forgotten)
     }
 
     /// Holds a recruiter's list (CSV) against ours.

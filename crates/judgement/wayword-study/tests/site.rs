@@ -335,10 +335,55 @@ fn another_sites_form_and_an_old_tab_change_nothing() {
     browser.origin = "https://evil.example".into();
     assert_eq!(browser.post("/answer", &answer).status, 403);
     browser.origin = format!("http://{}", site.address);
-    assert_eq!(browser.post("/answer", &format!("{answer}&who=somebody-else")).status, 303);
+    assert_eq!(browser.post("/answer", &format!("{answer}&who=somebody-else")).status, 409);
     assert_eq!(browser.get("/").field("slot"), slot, "nothing was answered");
     assert_eq!(browser.post("/answer", &answer).status, 303);
     assert_ne!(browser.get("/").field("slot"), slot);
+}
+
+#[test]
+fn an_old_page_still_counts_after_the_link_was_opened_again() {
+    let site = Site::new(Mode::Pair, |_| {});
+    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let mut browser = site.browser();
+    browser.get(&format!("/t/{token}"));
+    browser.post("/consent", "agree=yes");
+    let old = browser.get("/");
+    browser.get(&format!("/t/{token}"));
+    let form = format!("who={}&slot={}&choice=a", old.field("who"), old.field("slot"));
+    assert_eq!(browser.post("/answer", &form).status, 303);
+    assert_ne!(browser.get("/").field("slot"), old.field("slot"), "it was answered");
+}
+
+#[test]
+fn nobody_consents_to_a_page_that_has_changed() {
+    let site = Site::new(Mode::Pair, |_| {});
+    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let mut browser = site.browser();
+    browser.get(&format!("/t/{token}"));
+    let version = browser.get("/").field("version");
+    assert_eq!(browser.post("/consent", "agree=yes&version=of-yesterday").status, 422);
+    assert_eq!(browser.post("/consent", &format!("agree=yes&version={version}")).status, 303);
+}
+
+#[test]
+fn who_had_everything_deleted_does_not_come_in_again() {
+    let site = Site::new(Mode::Pair, |_| {});
+    let token = site.study.invite(1).unwrap().tokens.remove(0);
+    let mut browser = site.browser();
+    browser.get(&format!("/t/{token}"));
+    browser.post("/consent", "agree=yes");
+    let cookies = browser.cookies.clone();
+    for _ in 0..2 {
+        // The reply to the first was lost: the browser still has its cookie.
+        browser.cookies.clone_from(&cookies);
+        let gone = browser.post("/withdraw", "delete=yes");
+        assert!(gone.is_page("done") && gone.body.contains("deleted"), "{gone:?}");
+    }
+    assert_eq!(site.browser().get(&format!("/t/{token}")).status, 403);
+    assert!(site.study.clone().data().unwrap().participants.is_empty());
+    let log = site.study.folder.join("study.db-wal");
+    assert!(std::fs::metadata(log).map_or(0, |log| log.len()) < 100_000);
 }
 
 #[test]
@@ -354,6 +399,7 @@ fn no_path_leads_out() {
         "%2e%2e%2fstudy.db",
         "..%5c..%5cplan.json",
         "0.jpg%00",
+        "%ff.jpg",
         "0.png",
         "99999999999999999999.jpg",
     ] {

@@ -68,14 +68,21 @@ pub(super) fn answered<'a>(data: &'a Data, names: &Names<'_>) -> (Vec<Answered<'
     (all, problems)
 }
 
+/// Who gives no sign for longer than this was away: for a break, or until tomorrow.
+const AWAY_MS: i64 = 10 * 60 * 1000;
+
 impl Answered<'_> {
-    /// From getting the item to the answer, or to stopping; a clock that was set back gives 0.
+    /// From getting the item to the answer, or to stopping; `None` where somebody was away meanwhile, or the clock was set.
     pub(super) fn seconds(&self) -> Option<f64> {
         let end = match self.answer {
             Answer::Follow { stopped_ms, .. } => *stopped_ms,
             Answer::Rate { .. } | Answer::Pair { .. } => self.slot.answered_ms?,
         };
-        Some(seconds(self.slot.given_ms, end))
+        let mut times = vec![self.slot.given_ms];
+        times.extend(self.slot.moves.iter().map(|step| step.at_ms));
+        times.push(end);
+        let is_at_it = times.windows(2).all(|pair| (0..=AWAY_MS).contains(&(pair[1] - pair[0])));
+        is_at_it.then(|| seconds(self.slot.given_ms, end))
     }
 
     /// Moves, and turns to look.

@@ -106,7 +106,10 @@ impl People {
         let started = people.iter().filter(|person| person.status == Status::Started);
         let quiet = started.clone().filter(is_quiet).count();
         let minutes = people.iter().filter_map(minutes).collect();
-        let times = |times: usize| people.iter().filter(|person| person.misunderstood.min(2) as usize == times).count();
+        // Somebody who left at the questions has understood nothing yet, and failed at nothing.
+        let is_known = |person: &&Participant| person.understood || person.status == Status::ScreenedOut;
+        let known = || people.iter().filter(is_known);
+        let times = |times: usize| known().filter(|person| person.misunderstood.min(2) as usize == times).count();
         let tally = Tally::new(data, answered);
         Self {
             consented: people.len(),

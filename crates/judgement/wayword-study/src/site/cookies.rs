@@ -36,10 +36,10 @@ impl Cookies {
         self.set("session", token, "; Max-Age=604800")
     }
 
-    /// Keeps what somebody came with, until the browser is closed.
+    /// Keeps what somebody came with, for the hour in which they read and consent.
     pub(super) fn set_arrival(self, arrival: &Arrival) -> Option<HeaderValue> {
         let json = serde_json::to_vec(arrival).ok()?;
-        self.set("arrival", &URL_SAFE_NO_PAD.encode(json), "")
+        self.set("arrival", &URL_SAFE_NO_PAD.encode(json), "; Max-Age=3600")
     }
 
     /// Removes a cookie.
@@ -82,7 +82,7 @@ mod tests {
         let set = cookies.set_arrival(&arrival).unwrap();
         let set = set.to_str().unwrap();
         assert!(
-            set.starts_with("__Host-arrival=") && set.ends_with("; Path=/; HttpOnly; SameSite=Lax; Secure"),
+            set.starts_with("__Host-arrival=") && set.contains("; Path=/; HttpOnly; SameSite=Lax; Secure;"),
             "{set}"
         );
         let pair = set.split(';').next().unwrap();

@@ -24,10 +24,17 @@ pub(crate) struct Busy;
 type Deliver = Box<dyn FnOnce(bool) + Send>;
 type Job = Box<dyn FnOnce(&Book<'_>) -> (bool, Deliver) + Send>;
 
+/// What is handed in.
+enum Work {
+    Ask(Job),
+    /// Empty the log after a deletion.
+    Sweep,
+}
+
 /// Where requests hand in their work. Clones share one thread, which ends with the last of them.
 #[derive(Clone)]
 pub(crate) struct Desk {
-    jobs: mpsc::SyncSender<Job>,
+    jobs: mpsc::SyncSender<Work>,
 }
 
 impl Desk {
@@ -37,17 +44,32 @@ impl Desk {
     /// When the database cannot be opened, or the system has no thread.
     pub(crate) fn open(study: Arc<Study>) -> Result<(Self, JoinHandle<()>), StudyError> {
         let mut store = Store::open(&study.database())?;
-        let (jobs, waiting) = mpsc::sync_channel::<Job>(WAITING);
+        let (jobs, waiting) = mpsc::sync_channel::<Work>(WAITING);
         let thread = thread::Builder::new()
             .name("study-desk".to_owned())
             .spawn(move || {
                 while let Ok(first) = waiting.recv() {
-                    let batch: Vec<Job> = std::iter::once(first).chain(waiting.try_iter().take(TOGETHER - 1)).collect();
+                    let (mut batch, mut is_sweep) = (Vec::new(), false);
+                    for one in std::iter::once(first).chain(waiting.try_iter().take(TOGETHER - 1)) {
+                        match one {
+                            Work::Ask(job) => batch.push(job),
+                            Work::Sweep => is_sweep = true,
+                        }
+                    }
                     work(&mut store, &study, batch);
+                    if is_sweep {
+                        store.sweep();
+                    }
                 }
             })
             .map_err(StudyError::io("study-desk", "start the thread"))?;
         Ok((Self { jobs }, thread))
+    }
+
+    /// Empties the log when what is under way is written, so that what was deleted stands nowhere on the disk.
+    pub(crate) fn sweep(&self) {
+        // Where the queue is full, the next sweep does it.
+        let _ = self.jobs.try_send(Work::Sweep);
     }
 
     /// Does something in a transaction, and returns when it is on disk. `Err(Busy)` where it is not: nothing was written.
@@ -65,7 +87,7 @@ impl Desk {
             });
             (is_good, deliver)
         });
-        self.jobs.try_send(job).map_err(|_| Busy)?;
+        self.jobs.try_send(Work::Ask(job)).map_err(|_| Busy)?;
         answer.await.ok().flatten().ok_or(Busy)
     }
 }

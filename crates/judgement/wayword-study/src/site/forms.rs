@@ -38,7 +38,8 @@ pub(super) fn step(fields: &Fields) -> Result<Given, &'static str> {
 const WAY: &str = "Please choose a way.";
 
 pub(super) fn stop(fields: &Fields) -> Result<Given, &'static str> {
-    Ok(Given::Stop { slot: slot(fields)?, looks: number(fields, "looks").unwrap_or(0) })
+    let seq = number(fields, "seq").ok_or("This page is old. Please load it again.")?;
+    Ok(Given::Stop { slot: slot(fields)?, seq, looks: number(fields, "looks").unwrap_or(0) })
 }
 
 pub(super) fn answer(fields: &Fields, mode: Mode) -> Result<Given, &'static str> {

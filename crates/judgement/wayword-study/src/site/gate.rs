@@ -2,7 +2,7 @@
 
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, header};
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     sync::{Mutex, PoisonError},
     time::Instant,
 };
@@ -93,6 +93,7 @@ struct Rate {
 pub(super) struct Pace {
     began: Instant,
     buckets: Mutex<HashMap<Asker, Bucket>>,
+    known: Mutex<HashSet<String>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -103,7 +104,21 @@ struct Bucket {
 
 impl Pace {
     pub(super) fn new() -> Self {
-        Self { began: Instant::now(), buckets: Mutex::default() }
+        Self { began: Instant::now(), buckets: Mutex::default(), known: Mutex::default() }
+    }
+
+    /// Whether a session was good before.
+    pub(super) fn knows(&self, session: &str) -> bool {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner).contains(session)
+    }
+
+    /// Remembers a session that is good.
+    pub(super) fn remember(&self, session: String) {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() >= REMEMBERED {
+            known.clear();
+        }
+        known.insert(session);
     }
 
     /// Whether somebody may ask now.
@@ -160,6 +175,12 @@ mod tests {
         assert_eq!(asked, 120);
         assert!(pace.allows_at(Asker::Person(2), 0.0) && pace.allows_at(Asker::Stranger, 0.0));
         assert_eq!((0..200).filter(|_| pace.allows_at(Asker::Person(1), 1.0)).count(), 20);
+    }
+
+    #[test]
+    fn over_tls_browsers_come_back_over_tls() {
+        let has = |is_secure| headers(is_secure).iter().any(|(name, _)| *name == header::STRICT_TRANSPORT_SECURITY);
+        assert!(has(true) && !has(false));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::{
     routes::{Site, router},
     tls,
 };
-use crate::study::{Study, StudyError};
+use crate::study::{Recruiter, Study, StudyError};
 use axum::{Router, extract::Request};
 use hyper::{body::Incoming, server::conn::http1, service::service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
@@ -29,6 +29,8 @@ use tower_service::Service as _;
 
 /// Most connections at once. More wait for one to end.
 const CONNECTIONS: usize = 1024;
+/// Most pictures that are read at once.
+const PICTURES: usize = 64;
 /// How long a handshake or the head of a request may take.
 const HEAD: Duration = Duration::from_secs(10);
 /// How long a connection lasts. Browsers open a new one.
@@ -106,6 +108,7 @@ pub fn serve(
         pages: Pages::new()?,
         cookies: Cookies { is_secure },
         pace: Pace::new(),
+        readers: Semaphore::new(PICTURES),
         public: public.clone(),
         scheme,
     };
@@ -136,7 +139,19 @@ fn check(study: &Study, listen: &Listen) -> Result<(), StudyError> {
             "listen on 127.0.0.1 behind a server with TLS, or give --tls CERT KEY, --self-signed, or --insecure-lan";
         return Err(StudyError::refused(problem, hint));
     }
-    if (!is_loopback || listen.public.is_some()) && study.settings.contact.trim().is_empty() {
+    let is_plain = listen.public.as_ref().is_some_and(|url| !url.starts_with("https://"));
+    if is_plain && listen.security != Security::InsecureLan {
+        let problem = "--public: participants would come without TLS";
+        return Err(StudyError::refused(problem, "give an address that begins with https://, or --insecure-lan"));
+    }
+    let is_open = !is_loopback || listen.public.is_some();
+    let is_recruited = matches!(study.settings.recruiter, Recruiter::Parameters { .. });
+    if is_open && is_recruited && study.settings.codes.done.is_empty() {
+        let problem =
+            "study.toml: `codes.done` is empty, so participants would have nothing to take back to the recruiter";
+        return Err(StudyError::refused(problem, "copy the codes from the recruiter's page into [codes]"));
+    }
+    if is_open && study.settings.contact.trim().is_empty() {
         let problem = "study.toml: `contact` is empty, so participants could ask nobody";
         return Err(StudyError::refused(problem, "give a name, an institution and an address"));
     }

@@ -41,7 +41,7 @@ pub(super) struct Page {
 /// What all pages of a participant share.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Around {
-    /// A mark of the session, which is no secret.
+    /// A mark of the person, which is no secret.
     pub(super) who: Option<String>,
     /// What is missing.
     pub(super) error: Option<&'static str>,
@@ -49,17 +49,14 @@ pub(super) struct Around {
     pub(super) given: Option<Fields>,
 }
 
-/// A mark of a session for its pages.
-pub(super) fn mark(session: &str) -> String {
-    hash(&["mark", session])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
+/// A mark of a person for the pages: the same in each session, so that an answer that waits in a browser finds its way.
+pub(super) fn mark(name: &str) -> String {
+    hash(&["mark", name])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The version of what is consented to: it changes with the words.
 pub(super) fn consent_version(study: &Study) -> String {
-    let settings = &study.settings;
-    let mut words: Vec<&str> = settings.about.iter().map(String::as_str).collect();
-    words.extend([settings.agreement.as_str(), &settings.contact, &settings.retention]);
-    hash(&words)[..6].iter().map(|byte| format!("{byte:02x}")).collect()
+    hash(&study.settings.consent_words())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Pages {
@@ -100,6 +97,7 @@ impl Page {
             who => around.who,
             error => around.error,
             given => around.given,
+            text_lang => Some(&settings.text_language).filter(|tag| !tag.is_empty()),
             can_withdraw,
         };
         Self { name, values: context! { ..own, ..shared } }
@@ -136,7 +134,7 @@ impl Page {
         let encoded =
             |code| percent_encoding::utf8_percent_encode(code, percent_encoding::NON_ALPHANUMERIC).to_string();
         let return_url = code.zip(url).map(|(code, url)| url.replace("{code}", &encoded(code)));
-        Self::new(study, "done", around, false, context! { outcome, code, return_url, answers, kept })
+        Self::new(study, "done", around, around.who.is_some(), context! { outcome, code, return_url, answers, kept })
     }
 
     fn over(study: &Study, around: &Around, outcome: Outcome) -> Self {
@@ -287,6 +285,9 @@ pub(super) fn refused(study: &Study, entry: &Entry) -> Page {
             "Please open the link with which you started. If that does not help, ask us.",
             false,
         ),
+        Entry::Gone => {
+            ("You stopped taking part", "Your answers were deleted. One cannot take part again after that.", false)
+        }
         Entry::Full => {
             ("All places are taken at the moment", "A place may become free. Please try again in some minutes.", true)
         }

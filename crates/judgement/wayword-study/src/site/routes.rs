@@ -15,18 +15,21 @@ use crate::{
 use axum::{
     Router,
     body::Body,
-    extract::{DefaultBodyLimit, Form, FromRequest as _, Path, Query, Request, State},
+    extract::{DefaultBodyLimit, Form, FromRequest as _, Path, Query, Request, State, rejection::PathRejection},
     http::{HeaderMap, HeaderValue, StatusCode, header},
     middleware::{self, Next},
     response::{IntoResponse, Response},
     routing::{get, post},
 };
 use std::{collections::BTreeMap, sync::Arc, time::Duration};
+use tokio::sync::Semaphore;
 
 /// Longest body of a form, bytes.
 const MOST_BYTES: usize = 16 * 1024;
 /// How long a request may take, its body included.
 const PATIENCE: Duration = Duration::from_secs(15);
+/// What MTurk gives for an assignment while a worker only looks.
+const PREVIEW: &str = "ASSIGNMENT_ID_NOT_AVAILABLE";
 /// Seconds after which to try again.
 const AGAIN: HeaderValue = HeaderValue::from_static("1");
 
@@ -37,6 +40,8 @@ pub(super) struct Site {
     pub(super) pages: Pages,
     pub(super) cookies: Cookies,
     pub(super) pace: Pace,
+    /// How many pictures are read at once: memory is bounded by it.
+    pub(super) readers: Semaphore,
     /// The address that participants use, where it is not the one that the site listens on.
     pub(super) public: Option<String>,
     /// `http` or `https`, as the site is spoken to.
@@ -44,6 +49,8 @@ pub(super) struct Site {
 }
 
 type Shared = State<Arc<Site>>;
+/// The address of a picture; one that is no text has no page of its own.
+type SlotFile = Result<Path<(String, String)>, PathRejection>;
 
 /// All addresses.
 pub(super) fn router(site: Arc<Site>) -> Router {
@@ -80,7 +87,7 @@ async fn guard(State(site): Shared, request: Request, next: Next) -> Response {
     } else {
         match tokio::time::timeout(PATIENCE, next.run(request)).await {
             Ok(response) => response,
-            Err(_) => Problem::Slow.page(&site),
+            Err(_) => Problem::Busy.page(&site),
         }
     };
     for (name, value) in gate::headers(site.cookies.is_secure) {
@@ -97,7 +104,6 @@ enum Problem {
     Foreign,
     NoSession,
     Fast,
-    Slow,
     Busy,
     Large,
     Form,
@@ -127,7 +133,6 @@ impl Problem {
                 false,
             ),
             Self::Fast => (StatusCode::TOO_MANY_REQUESTS, "That was very fast", "Please wait a moment.", true),
-            Self::Slow => (StatusCode::REQUEST_TIMEOUT, "That took too long", "Please try again.", true),
             Self::Busy => (StatusCode::SERVICE_UNAVAILABLE, "Not yet stored", "Please try again in a moment.", true),
             Self::Large => (StatusCode::PAYLOAD_TOO_LARGE, "That was too much", "Please write less.", false),
             Self::Form => (StatusCode::BAD_REQUEST, "We could not read that", "Please load the page again.", true),
@@ -200,28 +205,35 @@ async fn who(site: &Site, headers: &HeaderMap) -> Result<Option<(i64, String)>, 
     if site.pace.allows(asker) { Ok(found) } else { Err(Problem::Fast) }
 }
 
-/// Whose session it is.
+/// Whose session it is, with the person's mark. A cookie that was never good has the strangers' pace before anything is looked up.
 async fn known(site: &Site, headers: &HeaderMap) -> Result<Option<(i64, String)>, Problem> {
     let session = site.cookies.session(headers).filter(|session| is_token(session));
     Ok(match session {
         Some(session) => {
+            if !site.pace.knows(&session) && !site.pace.allows(Asker::Stranger) {
+                return Err(Problem::Fast);
+            }
             let asked = session.clone();
-            site.desk.ask(move |book| book.whose(&asked)).await?.map(|person| (person, session))
+            let found = site.desk.ask(move |book| book.whose(&asked)).await?;
+            if found.is_some() {
+                site.pace.remember(session);
+            }
+            found.map(|(person, name)| (person, mark(&name)))
         }
         None => None,
     })
 }
 
 async fn person(site: &Site, headers: &HeaderMap) -> Result<(i64, Around), Problem> {
-    let (person, session) = who(site, headers).await?.ok_or(Problem::NoSession)?;
-    Ok((person, Around { who: Some(mark(&session)), ..Around::default() }))
+    let (person, mark) = who(site, headers).await?.ok_or(Problem::NoSession)?;
+    Ok((person, Around { who: Some(mark), ..Around::default() }))
 }
 
 /// The page of where this person is.
 async fn place(State(site): Shared, headers: HeaderMap) -> Response {
     let page = async {
-        if let Some((person, session)) = who(&site, &headers).await? {
-            let around = Around { who: Some(mark(&session)), ..Around::default() };
+        if let Some((person, mark)) = who(&site, &headers).await? {
+            let around = Around { who: Some(mark), ..Around::default() };
             return standing(&site, person, around, StatusCode::OK).await;
         }
         let Some(arrival) = site.cookies.arrival(&headers) else {
@@ -254,7 +266,7 @@ fn entered(site: &Site, entry: Entry) -> Response {
         Entry::Back(session) => onwards([site.cookies.set_session(&session), site.cookies.drop_arrival()]),
         entry => {
             let status = match entry {
-                Entry::Full => StatusCode::SERVICE_UNAVAILABLE,
+                Entry::Full => StatusCode::CONFLICT,
                 Entry::Closed => StatusCode::GONE,
                 _ => StatusCode::FORBIDDEN,
             };
@@ -269,14 +281,15 @@ async fn arrive(site: &Site, arrival: Arrival) -> Result<Response, Problem> {
     }
     let asked = arrival.clone();
     Ok(match site.desk.ask(move |book| book.enter(&asked)).await? {
-        // A session of somebody else on this machine ends here.
-        Entry::New => onwards([site.cookies.set_arrival(&arrival), site.cookies.drop_session()]),
+        // A session of somebody else on this machine ends here. Where the study is full, the page asks again.
+        Entry::New | Entry::Full => onwards([site.cookies.set_arrival(&arrival), site.cookies.drop_session()]),
         entry => entered(site, entry),
     })
 }
 
 /// A personal link.
-async fn personal(State(site): Shared, Path(token): Path<String>) -> Response {
+async fn personal(State(site): Shared, token: Result<Path<String>, PathRejection>) -> Response {
+    let Ok(Path(token)) = token else { return Problem::Missing.page(&site) };
     ended(arrive(&site, Arrival::Link(token)).await, &site)
 }
 
@@ -285,6 +298,10 @@ async fn join(State(site): Shared, Query(query): Query<BTreeMap<String, String>>
     let Recruiter::Parameters { person, session, study, .. } = &site.study.settings.recruiter else {
         return Problem::Missing.page(&site);
     };
+    if query.get(session).is_some_and(|session| session == PREVIEW) {
+        let text = "Accept the task, and open its link again to take part.";
+        return shown(&site, StatusCode::OK, &Page::message(&site.study, "This is a preview", text, false));
+    }
     let value = |name: &String| query.get(name).cloned().unwrap_or_default();
     let arrival = Arrival::Recruit { person: value(person), session: value(session), study: value(study) };
     ended(arrive(&site, arrival).await, &site)
@@ -313,9 +330,19 @@ async fn consent(State(site): Shared, request: Request) -> Response {
         }
         let arrival = site.cookies.arrival(&headers).ok_or(Problem::NoSession)?;
         if fields.get("agree").map(String::as_str) != Some("yes") {
-            return Ok(shown(&site, StatusCode::OK, &Page::gone(&site.study, false)));
+            let mut response = shown(&site, StatusCode::OK, &Page::gone(&site.study, false));
+            // The next person at this machine is somebody else.
+            if let Some(cookie) = site.cookies.drop_arrival() {
+                response.headers_mut().append(header::SET_COOKIE, cookie);
+            }
+            return Ok(response);
         }
         let version = consent_version(&site.study);
+        if fields.get("version").is_some_and(|read| *read != version) {
+            let error = Some("This page has changed. Please read it once more.");
+            let page = Page::consent(&site.study, &Around { error, ..Around::default() });
+            return Ok(shown(&site, StatusCode::UNPROCESSABLE_ENTITY, &page));
+        }
         Ok(entered(&site, site.desk.ask(move |book| book.consent(&arrival, &version)).await?))
     };
     ended(done.await, &site)
@@ -330,7 +357,7 @@ async fn give(
     let (headers, fields) = fields(request).await?;
     let (person, around) = person(site, &headers).await?;
     if !is_of(&fields, &around) {
-        return Ok(onwards([]));
+        return Err(Problem::OutOfTurn);
     }
     match read(&fields) {
         Ok(given) => {
@@ -381,13 +408,21 @@ async fn leave(State(site): Shared, headers: HeaderMap) -> Response {
 async fn withdraw(State(site): Shared, request: Request) -> Response {
     let done = async {
         let (headers, fields) = fields(request).await?;
-        let (person, around) = person(&site, &headers).await?;
+        let is_delete = fields.get("delete").map(String::as_str) == Some("yes");
+        let (person, around) = match person(&site, &headers).await {
+            // The same again, after the first was done and its reply lost.
+            Err(Problem::NoSession) if is_delete => {
+                return Ok(shown(&site, StatusCode::OK, &Page::gone(&site.study, true)));
+            }
+            found => found?,
+        };
         if !is_of(&fields, &around) {
-            return Ok(onwards([]));
+            return Err(Problem::OutOfTurn);
         }
         match fields.get("delete").map(String::as_str) {
             Some("yes") => {
                 site.desk.ask(move |book| book.withdraw(person, Withdrawal::Delete)).await?;
+                site.desk.sweep();
                 let mut response = shown(&site, StatusCode::OK, &Page::gone(&site.study, true));
                 if let Some(cookie) = site.cookies.drop_session() {
                     response.headers_mut().append(header::SET_COOKIE, cookie);
@@ -407,12 +442,14 @@ async fn withdraw(State(site): Shared, request: Request) -> Response {
     ended(done.await, &site)
 }
 
-async fn look(State(site): Shared, Path((slot, file)): Path<(String, String)>, headers: HeaderMap) -> Response {
+async fn look(State(site): Shared, path: SlotFile, headers: HeaderMap) -> Response {
+    let Ok(Path((slot, file))) = path else { return Problem::Missing.page(&site) };
     let find = move |book: &Book<'_>, person, number| book.panorama(person, &slot, number);
     ended(picture(&site, &headers, &file, find).await, &site)
 }
 
-async fn film(State(site): Shared, Path((slot, file)): Path<(String, String)>, headers: HeaderMap) -> Response {
+async fn film(State(site): Shared, path: SlotFile, headers: HeaderMap) -> Response {
+    let Ok(Path((slot, file))) = path else { return Problem::Missing.page(&site) };
     let find = move |book: &Book<'_>, person, number| book.film_picture(person, &slot, number);
     ended(picture(&site, &headers, &file, find).await, &site)
 }
@@ -430,6 +467,7 @@ async fn picture(
         return Err(Problem::Fast);
     }
     let name = site.desk.ask(move |book| find(book, person, number)).await?.ok_or(Problem::Missing)?;
+    let _place = site.readers.acquire().await.map_err(|_| Problem::Busy)?;
     let path = site.study.pictures().join(name);
     let bytes = tokio::task::spawn_blocking(move || std::fs::read(path)).await;
     let bytes = bytes.ok().and_then(Result::ok).ok_or(Problem::Fault)?;

@@ -21,7 +21,7 @@ pub(crate) enum Given {
     /// A step along a neighbour of the place where one stands, after `seq` steps.
     Move { slot: String, seq: usize, to: usize },
     /// The end of a walk.
-    Stop { slot: String, looks: u32 },
+    Stop { slot: String, seq: usize, looks: u32 },
     /// Statements after a walk.
     Followed { slot: String, statements: [u8; 3] },
     /// The levels of a text.
@@ -58,7 +58,7 @@ impl Book<'_> {
             Given::Attention { number, choice } => self.attention(person, number, choice),
             Given::OwnText { slot, text } => self.with(person, &slot, |held| self.own_text(held, &text)),
             Given::Move { slot, seq, to } => self.with(person, &slot, |held| self.step(held, seq, to)),
-            Given::Stop { slot, looks } => self.with(person, &slot, |held| self.stop(held, looks)),
+            Given::Stop { slot, seq, looks } => self.with(person, &slot, |held| self.stop(held, seq, looks)),
             Given::Rated { slot, ratings } => self.with(person, &slot, |held| {
                 let is_early = self.study.settings.write_first && held.own_text.is_none();
                 self.answer(held, Mode::Rate, is_early, &Answer::Rate { ratings })
@@ -115,12 +115,14 @@ impl Book<'_> {
         if number < answered {
             return Ok(Ok(()));
         }
-        if number > answered || number >= self.study.settings.attention_checks || self.outcome(person)?.is_some() {
+        let is_due = self.check_due(person, self.done(person)?)? == Some(number);
+        if !is_due || self.outcome(person)?.is_some() {
             return Ok(Err(Refusal::OutOfTurn));
         }
         let passed = choice == self.asked_level(person, number)?;
         let kept = "INSERT INTO attention (person, number, passed, at_ms) VALUES (?1, ?2, ?3, ?4)";
         self.db.execute(kept, params![person, number, passed, self.now_ms])?;
+        self.end_if_done(person)?;
         Ok(Ok(()))
     }
 
@@ -148,11 +150,15 @@ impl Book<'_> {
         Ok(Ok(()))
     }
 
-    fn stop(&self, held: &Held, looks: u32) -> Kept {
+    fn stop(&self, held: &Held, seq: usize, looks: u32) -> Kept {
         if self.study.plan.mode != Mode::Follow {
             return Ok(Err(Refusal::OutOfTurn));
         }
         if held.stopped_ms.is_none() {
+            // An old page, of a place where the walker is no more, must not end the walk.
+            if seq != held.moves.len() {
+                return Ok(Err(Refusal::OutOfTurn));
+            }
             let stopped = "UPDATE slot SET stopped_ms = ?2, looks = ?3 WHERE id = ?1";
             self.db.execute(stopped, params![held.id, self.now_ms, looks.min(MOST_LOOKS)])?;
         }
@@ -166,6 +172,7 @@ impl Book<'_> {
         let Ok(answer) = serde_json::to_string(answer) else { return Ok(Err(Refusal::Unknown)) };
         let kept = "UPDATE slot SET state = 'answered', answer = ?2, answered_ms = ?3 WHERE id = ?1";
         self.db.execute(kept, params![held.id, answer, self.now_ms])?;
+        self.end_if_done(self.db.query_row("SELECT person FROM slot WHERE id = ?1", [held.id], |row| row.get(0))?)?;
         Ok(Ok(()))
     }
 }

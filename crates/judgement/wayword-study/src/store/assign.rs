@@ -28,24 +28,27 @@ impl Book<'_> {
         i64::try_from(self.study.settings.lease_s).unwrap_or(i64::MAX / 2000).saturating_mul(1000)
     }
 
-    /// How full each item is.
+    /// How full each item is. A lease that reaches farther than a lease can is of a clock that was set back: it has run out.
     pub(super) fn filled(&self) -> Result<BTreeMap<u32, Filled>, StudyError> {
         let mut count = self.db.prepare_cached(
-            "SELECT item, sum(state = 'answered'), sum(state = 'live' AND lease_ms > ?1) FROM slot \
+            "SELECT item, sum(state = 'answered'), sum(state = 'live' AND lease_ms BETWEEN ?1 + 1 AND ?2) FROM slot \
              WHERE position IS NOT NULL GROUP BY item",
         )?;
-        let counts = count
-            .query_map([self.now_ms], |row| Ok((row.get(0)?, Filled { answered: row.get(1)?, live: row.get(2)? })))?;
+        let counts = count.query_map([self.now_ms, self.now_ms + self.lease_ms()], |row| {
+            Ok((row.get(0)?, Filled { answered: row.get(1)?, live: row.get(2)? }))
+        })?;
         Ok(counts.collect::<Result<_, _>>()?)
     }
 
-    /// Whether one more person would find something to do, when all who are at it go on to their end.
-    pub(super) fn has_room(&self) -> Result<bool, StudyError> {
+    /// How many items one more person would find, when all who are at it go on to their end: each on a route of its own.
+    pub(super) fn room(&self) -> Result<u32, StudyError> {
         let filled = self.filled()?;
         let per_item = self.study.plan.per_item;
         let free =
             |item: &Item| u64::from(per_item.saturating_sub(filled.get(&item.id).copied().unwrap_or_default().all()));
         let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free).sum();
+        let routes: BTreeSet<u32> =
+            self.study.items.iter().filter(|item| !item.is_practice && free(item) > 0).map(|item| item.route).collect();
         let pending: i64 = self.db.query_row(
             "SELECT coalesce(sum(max(0, expected - (SELECT count(*) FROM slot WHERE person = person.id AND position IS NOT NULL \
              AND (state = 'answered' OR (state = 'live' AND lease_ms > ?1))))), 0) \
@@ -53,7 +56,8 @@ impl Book<'_> {
             params![self.now_ms, self.now_ms - self.lease_ms()],
             |row| row.get(0),
         )?;
-        Ok(open > pending.unsigned_abs())
+        let left = open.saturating_sub(pending.unsigned_abs()).min(routes.len() as u64);
+        Ok(u32::try_from(left).unwrap_or(u32::MAX))
     }
 
     /// Gives a person the item for practice, if the study has one.

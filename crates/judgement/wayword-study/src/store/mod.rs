@@ -77,6 +77,26 @@ impl Store {
         Ok(done)
     }
 
+    /// Reads at one moment, without keeping others from writing.
+    ///
+    /// # Errors
+    /// What `work` returns, or what SQLite says.
+    pub(crate) fn read<T>(
+        &mut self,
+        study: &Study,
+        now_ms: i64,
+        work: impl FnOnce(&Book<'_>) -> Result<T, StudyError>,
+    ) -> Result<T, StudyError> {
+        let transaction = self.db.transaction_with_behavior(TransactionBehavior::Deferred)?;
+        work(&Book { db: &transaction, study, now_ms })
+    }
+
+    /// Empties the log, so that what was deleted stands nowhere on the disk. Others who read at the moment can hinder it; then the next
+    /// sweep does it.
+    pub(crate) fn sweep(&self) {
+        let _ = self.db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
+    }
+
     /// Does several things as one transaction, with one wait for the disk. `work` says of each whether it is kept: one that failed takes
     /// nothing of the others with it.
     ///

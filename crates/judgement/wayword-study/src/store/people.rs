@@ -59,6 +59,8 @@ pub(crate) enum Entry {
     Unknown,
     /// Nowhere: the same person came by another link of the recruiter before.
     Twice,
+    /// Nowhere: the person had everything deleted.
+    Gone,
     /// Nowhere at the moment: all places are taken.
     Full,
     /// Nowhere: the study is over.
@@ -120,6 +122,9 @@ impl Book<'_> {
         if let Some(person) = self.by_link(arrival)? {
             return Ok(Entry::Back(self.session_for(person)?));
         }
+        if self.is_barred(arrival)? {
+            return Ok(Entry::Gone);
+        }
         match arrival {
             Arrival::Link(_) => {
                 let made = self.db.query_row("SELECT 1 FROM link WHERE hash = ?1", [arrival.hash()], |_| Ok(()));
@@ -143,7 +148,8 @@ impl Book<'_> {
         if self.is_closed()? {
             return Ok(Entry::Closed);
         }
-        Ok(if self.has_room()? { Entry::New } else { Entry::Full })
+        let least = self.study.settings.least_items.max(1);
+        Ok(if self.room()? >= least.min(self.study.plan.per_participant) { Entry::New } else { Entry::Full })
     }
 
     /// Takes somebody in who consented to the text with this hash. The same arrival again leads to the same person.
@@ -152,6 +158,8 @@ impl Book<'_> {
         if entry != Entry::New {
             return Ok(entry);
         }
+        let words = serde_json::json!(self.study.settings.consent_words()).to_string();
+        self.db.execute("INSERT OR IGNORE INTO consent (hash, words) VALUES (?1, ?2)", [consent, &words])?;
         self.db.execute(
             "INSERT INTO person (name, link, status, consent, consented_ms, seen_ms, understood, expected) \
              VALUES (?1, ?2, 'started', ?3, ?4, ?4, ?5, ?6)",
@@ -161,7 +169,8 @@ impl Book<'_> {
                 consent,
                 self.now_ms,
                 self.study.settings.questions.is_empty(),
-                self.study.plan.per_participant
+                // Nobody is promised more than there is.
+                self.room()?.min(self.study.plan.per_participant)
             ],
         )?;
         let person = self.db.last_insert_rowid();
@@ -172,26 +181,31 @@ impl Book<'_> {
         Ok(Entry::Back(self.session_for(person)?))
     }
 
-    /// Whose session it is, and a sign of life.
-    pub(crate) fn whose(&self, session: &str) -> Result<Option<i64>, StudyError> {
+    /// Whose session it is, with the person's id in the results, and a sign of life.
+    pub(crate) fn whose(&self, session: &str) -> Result<Option<(i64, String)>, StudyError> {
         if !is_token(session) {
             return Ok(None);
         }
         let row = params![hash(&["session", session]), self.now_ms - SESSION_MS];
-        let found =
-            self.db.query_row("SELECT person FROM session WHERE hash = ?1 AND made_ms > ?2", row, |row| row.get(0));
-        let person: Option<i64> = found.optional()?;
-        if let Some(person) = person {
-            let seen = "UPDATE person SET seen_ms = ?2 WHERE id = ?1 AND seen_ms < ?2 - 1000";
+        let find =
+            "SELECT person, name FROM session JOIN person ON person.id = person WHERE hash = ?1 AND made_ms > ?2";
+        let found: Option<(i64, String)> =
+            self.db.query_row(find, row, |row| Ok((row.get(0)?, row.get(1)?))).optional()?;
+        if let Some((person, _)) = &found {
+            // A clock that was set back counts too: otherwise somebody who is here would look gone.
+            let seen = "UPDATE person SET seen_ms = ?2 WHERE id = ?1 AND abs(seen_ms - ?2) > 1000";
             self.db.execute(seen, params![person, self.now_ms])?;
         }
-        Ok(person)
+        Ok(found)
     }
 
     /// Ends the participation of somebody.
     pub(crate) fn withdraw(&self, person: i64, what: Withdrawal) -> Result<(), StudyError> {
         match what {
-            Withdrawal::Delete => self.erase(person),
+            Withdrawal::Delete => {
+                self.bar(person)?;
+                self.erase(person)
+            }
             Withdrawal::Keep => {
                 self.give_back(person)?;
                 let ended =
@@ -202,12 +216,16 @@ impl Book<'_> {
         }
     }
 
-    /// Removes all that somebody gave, or counts it for a dry run. `participant` is an id of ours or the recruiter's.
+    /// Removes all that somebody gave, or counts it for a dry run. `participant` is an id of ours, the recruiter's, or a
+    /// personal link.
     pub(crate) fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
-        let find =
-            "SELECT id, name FROM person WHERE name = ?1 OR id IN (SELECT person FROM recruit WHERE recruit.id = ?1)";
-        let found = self.db.query_row(find, [participant], |row| Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?)));
-        let Some((person, name)) = found.optional()? else {
+        let token = participant.rsplit_once("/t/").map_or(participant, |(_, token)| token);
+        let link = Arrival::Link(token.to_owned()).hash();
+        let find = "SELECT id, name FROM person \
+                    WHERE name = ?1 OR link = ?2 OR id IN (SELECT person FROM recruit WHERE recruit.id = ?1)";
+        let found =
+            self.db.query_row(find, params![participant, link], |row| Ok((row.get(0)?, row.get(1)?))).optional()?;
+        let Some((person, name)): Option<(i64, String)> = found else {
             let problem = format!("there is no participant {participant}");
             return Err(StudyError::refused(
                 problem,
@@ -222,6 +240,27 @@ impl Book<'_> {
         Ok(Forgotten { participant: name, answers, items, is_done: !is_dry })
     }
 
+    /// Keeps somebody who had everything deleted from coming in again as a stranger, until the study is closed.
+    fn bar(&self, person: i64) -> Result<(), StudyError> {
+        let barred = "INSERT OR IGNORE INTO gone (hash) SELECT link FROM person WHERE id = ?1";
+        self.db.execute(barred, [person])?;
+        let find = "SELECT id FROM recruit WHERE person = ?1";
+        let recruit: Option<String> = self.db.query_row(find, [person], |row| row.get(0)).optional()?;
+        if let Some(recruit) = recruit {
+            self.db.execute("INSERT OR IGNORE INTO gone (hash) VALUES (?1)", [hash(&["recruiter's id", &recruit])])?;
+        }
+        Ok(())
+    }
+
+    fn is_barred(&self, arrival: &Arrival) -> Result<bool, StudyError> {
+        let recruit = match arrival {
+            Arrival::Link(_) => None,
+            Arrival::Recruit { person, .. } => Some(hash(&["recruiter's id", person])),
+        };
+        let find = "SELECT EXISTS (SELECT 1 FROM gone WHERE hash IN (?1, ?2))";
+        Ok(self.db.query_row(find, params![arrival.hash(), recruit], |row| row.get(0))?)
+    }
+
     fn erase(&self, person: i64) -> Result<(), StudyError> {
         let link: Option<[u8; 32]> =
             self.db.query_row("SELECT link FROM person WHERE id = ?1", [person], |row| row.get(0)).optional()?;
@@ -234,12 +273,16 @@ impl Book<'_> {
 
     /// Takes no more answers, and drops what recruiters call the participants. Returns how many are in the middle of it.
     pub(crate) fn close(&self, even_if_live: bool) -> Result<u32, StudyError> {
+        self.end_all_done()?;
         let live = self.live()?;
         if live == 0 || even_if_live {
             if !self.is_closed()? {
                 self.set_meta("closed_ms", &self.now_ms.to_string())?;
             }
+            // The hash of a recruiter's link would tell who came, to anybody who has the recruiter's list.
+            self.db.execute("UPDATE person SET link = randomblob(32) WHERE id IN (SELECT person FROM recruit)", [])?;
             self.db.execute("DELETE FROM recruit", [])?;
+            self.db.execute("DELETE FROM gone", [])?;
         }
         Ok(live)
     }
@@ -261,11 +304,9 @@ impl Book<'_> {
 
     /// Ends it, and says how.
     pub(super) fn end(&self, person: i64, status: Status) -> Result<Stage, StudyError> {
-        let ended = "UPDATE person SET status = ?2, finished_ms = ?3, expected = \
-                     (SELECT count(*) FROM slot WHERE person = person.id AND state = 'answered' AND position IS NOT NULL) WHERE id = ?1";
+        let ended = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
         self.db.execute(ended, params![person, name_of(status), self.now_ms])?;
-        let answers = self.db.query_row("SELECT expected FROM person WHERE id = ?1", [person], |row| row.get(0))?;
-        Ok(Stage::Over(Outcome { status, answers }))
+        Ok(Stage::Over(Outcome { status, answers: self.done(person)?.answered }))
     }
 
     fn by_link(&self, arrival: &Arrival) -> Result<Option<i64>, StudyError> {

@@ -16,7 +16,7 @@ impl Store {
             let forgotten = people::forgotten(book)?;
             Ok((participants(book.db)?, slots(book.db, book.now_ms)?, forgotten, book.is_closed()?))
         };
-        let (participants, slots, forgotten, is_closed) = self.write(&study, now_ms, read)?;
+        let (participants, slots, forgotten, is_closed) = self.read(&study, now_ms, read)?;
         let Study { plan, settings, items, routes, scenes, .. } = study;
         Ok(Data { plan, settings, items, routes, scenes, participants, slots, forgotten, is_closed })
     }
@@ -31,7 +31,7 @@ fn participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
         attention.entry(row.get(0)?).or_default().push(passed);
     }
     let mut all = db.prepare(
-        "SELECT id, name, status, consented_ms, consent, finished_ms, seen_ms, misunderstood, expected FROM person \
+        "SELECT id, name, status, consented_ms, consent, finished_ms, seen_ms, misunderstood, expected, understood, recruiter_status FROM person \
          ORDER BY consented_ms, id",
     )?;
     let participant = |row: &Row<'_>| {
@@ -45,6 +45,8 @@ fn participants(db: &Connection) -> Result<Vec<Participant>, StudyError> {
             seen_ms: row.get(6)?,
             misunderstood: row.get(7)?,
             expected: row.get(8)?,
+            understood: row.get(9)?,
+            recruiter_status: row.get(10)?,
             attention: attention.remove(&id).unwrap_or_default(),
         })
     };

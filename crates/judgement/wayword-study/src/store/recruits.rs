@@ -1,4 +1,5 @@
-//! What a recruiter's list says of the participants, beside what we know. Its status is imported, never assumed.
+//! What a recruiter's list says of the participants, beside what we know. Its status is imported, never assumed, and
+//! decides nothing.
 
 use super::{Book, people};
 use crate::study::{Status, StudyError};
@@ -54,6 +55,12 @@ impl Book<'_> {
                 "ids are dropped when a study is closed: reconcile first, then close",
             ));
         }
+        // Theirs is kept beside ours, without the id.
+        for (id, status) in &theirs {
+            let keep =
+                "UPDATE person SET recruiter_status = ?2 WHERE id = (SELECT person FROM recruit WHERE recruit.id = ?1)";
+            self.db.execute(keep, [id, &known_word(status)])?;
+        }
         let ids: BTreeSet<&String> = theirs.keys().chain(ours.keys()).collect();
         let row = |id: &String| {
             let (our, their) = (ours.get(id), theirs.get(id));
@@ -87,11 +94,21 @@ fn problem(ours: Option<Status>, theirs: Option<&str>) -> Option<&'static str> {
             Some("they list it as done, and our answers are not complete")
         }
         (Some(Status::AttentionFailed), Some("APPROVED")) => Some("approved, and the attention checks failed"),
-        (Some(Status::Started), _) if is_out => {
-            Some("started here, and over there: its item returns when the time runs out")
+        (Some(Status::Complete | Status::AttentionFailed), _) if is_paid => None,
+        (Some(Status::Started | Status::Withdrawn | Status::ScreenedOut | Status::AttentionFailed), _) if is_out => {
+            None
         }
-        _ => None,
+        (Some(Status::Started), Some("ACTIVE" | "RESERVED")) | (Some(Status::ScreenedOut), Some("SCREENED OUT")) => {
+            None
+        }
+        _ => Some("the two do not fit together, as far as we know: look at this one"),
     }
+}
+
+/// A status as a word for files, whatever the recruiter's file says.
+fn known_word(status: &str) -> String {
+    let is_plain = |letter: &char| letter.is_ascii_alphanumeric() || matches!(letter, ' ' | '-' | '_');
+    status.chars().filter(is_plain).take(40).collect()
 }
 
 /// Ids and statuses of a recruiter's file.
@@ -134,5 +151,7 @@ mod tests {
         assert!(problem(None, Some("Approved")).unwrap().contains("nobody"));
         assert_eq!(problem(None, Some("RETURNED")), None);
         assert!(problem(Some(Status::Started), None).is_some());
+        assert!(problem(Some(Status::Complete), Some("SCREENED OUT")).is_some());
+        assert_eq!(problem(Some(Status::Started), Some("RETURNED")), None);
     }
 }

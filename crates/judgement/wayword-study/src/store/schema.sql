@@ -9,6 +9,7 @@ CREATE TABLE IF NOT EXISTS person (
     consent TEXT NOT NULL,
     consented_ms INTEGER NOT NULL,
     finished_ms INTEGER,
+    recruiter_status TEXT,
     seen_ms INTEGER NOT NULL,
     misunderstood INTEGER NOT NULL DEFAULT 0,
     understood INTEGER NOT NULL DEFAULT 0,
@@ -25,6 +26,12 @@ CREATE TABLE IF NOT EXISTS recruit (
 
 -- Personal links that were made, by the hash of their token.
 CREATE TABLE IF NOT EXISTS link (hash BLOB PRIMARY KEY, made_ms INTEGER NOT NULL) STRICT;
+
+-- Those who had everything deleted: hashes of what they came with, until the study is closed.
+CREATE TABLE IF NOT EXISTS gone (hash BLOB PRIMARY KEY) STRICT;
+
+-- The words that people consented to, by their hash.
+CREATE TABLE IF NOT EXISTS consent (hash TEXT PRIMARY KEY, words TEXT NOT NULL) STRICT;
 
 CREATE TABLE IF NOT EXISTS session (
     hash BLOB PRIMARY KEY,

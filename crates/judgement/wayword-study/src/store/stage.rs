@@ -2,12 +2,10 @@
 //! show the same.
 
 use super::{Book, people::Outcome};
-use crate::study::{Item, Mode, Route, Scene, Status, StudyError};
+use crate::study::{Item, LONG_MINUTES, Mode, Route, Scene, Status, StudyError};
 use rusqlite::{OptionalExtension as _, params};
 use wayword_core::{ViewpointId, seed::derive};
 
-/// A study of this length or longer needs two failed checks (Prolific's rule), minutes.
-const LONG_MINUTES: u32 = 5;
 /// Levels that an attention check may ask for: not the middle one, which people choose without reading.
 const ASKED: [u8; 4] = [1, 2, 4, 5];
 
@@ -77,9 +75,29 @@ impl Book<'_> {
         let is_given = is_given || (done.answered < done.expected && self.hand_out_next(person)?);
         match self.held(person)?.filter(|_| is_given) {
             Some(held) => Ok(Stage::Item(held)),
-            None => self
-                .end(person, if self.has_failed_checks(person)? { Status::AttentionFailed } else { Status::Complete }),
+            None => self.finish(person),
         }
+    }
+
+    /// Ends it for somebody who has answered everything.
+    fn finish(&self, person: i64) -> Result<Stage, StudyError> {
+        self.end(person, if self.has_failed_checks(person)? { Status::AttentionFailed } else { Status::Complete })
+    }
+
+    /// Ends it where all is answered: whoever closes the page after the last answer is done too.
+    pub(super) fn end_if_done(&self, person: i64) -> Result<(), StudyError> {
+        let done = self.done(person)?;
+        if done.answered >= done.expected && done.answered > 0 && self.check_due(person, done)?.is_none() {
+            self.finish(person)?;
+        }
+        Ok(())
+    }
+
+    /// The same for everybody.
+    pub(super) fn end_all_done(&self) -> Result<(), StudyError> {
+        let mut find = self.db.prepare("SELECT id FROM person WHERE status = 'started'")?;
+        let all: Vec<i64> = find.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
+        all.into_iter().try_for_each(|person| self.end_if_done(person))
     }
 
     /// How many items are answered, and how many there will be.
@@ -126,7 +144,7 @@ impl Book<'_> {
     }
 
     /// The attention check that is due after so many answers.
-    fn check_due(&self, person: i64, done: Done) -> Result<Option<u32>, StudyError> {
+    pub(super) fn check_due(&self, person: i64, done: Done) -> Result<Option<u32>, StudyError> {
         let checks = self.study.settings.attention_checks;
         let answered: u32 =
             self.db.query_row("SELECT count(*) FROM attention WHERE person = ?1", [person], |row| row.get(0))?;

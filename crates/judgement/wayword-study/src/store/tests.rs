@@ -89,7 +89,7 @@ impl Desk {
 
     fn come(&self, arrival: &Arrival) -> Result<i64, Entry> {
         match self.ask(|book| book.consent(arrival, HASH)) {
-            Entry::Back(session) => Ok(self.ask(|book| book.whose(&session)).unwrap()),
+            Entry::Back(session) => Ok(self.ask(|book| book.whose(&session)).unwrap().0),
             entry => Err(entry),
         }
     }
@@ -120,7 +120,7 @@ impl Desk {
                 Given::Rated { slot, ratings: [1, 2, 3, 4] }
             }
             Mode::Follow => {
-                self.give(person, Given::Stop { slot: slot.clone(), looks: 2 }).unwrap();
+                self.give(person, Given::Stop { slot: slot.clone(), seq: held.moves.len(), looks: 2 }).unwrap();
                 Given::Followed { slot, statements: [1, 2, 3] }
             }
         };
@@ -269,7 +269,7 @@ fn a_walk_goes_by_the_graph_and_each_step_counts_once() {
     assert_eq!(desk.ask(|book| book.panorama(person, &slot, 3)), None, "no place is seen before one is there");
     let followed = || Given::Followed { slot: slot.clone(), statements: [3; 3] };
     assert_eq!(desk.give(person, followed()), Err(Refusal::OutOfTurn), "one stops first");
-    desk.give(person, Given::Stop { slot: slot.clone(), looks: 7 }).unwrap();
+    desk.give(person, Given::Stop { slot: slot.clone(), seq: 2, looks: 7 }).unwrap();
     assert_eq!(desk.give(person, step(2, 0)), Err(Refusal::OutOfTurn), "one does not go on after that");
     desk.give(person, followed()).unwrap();
     let data = desk.data();
@@ -319,6 +319,65 @@ fn two_failed_attention_checks_are_told_from_none() {
     assert_eq!(attend(desk.newcomer(), true), Status::Complete);
     assert_eq!(attend(desk.newcomer(), false), Status::AttentionFailed);
     assert_eq!(desk.data().participants.iter().map(|person| person.attention.len()).collect::<Vec<_>>(), [2, 2]);
+}
+
+#[test]
+fn an_attention_check_waits_until_it_is_due() {
+    let mut desk = study(Mode::Pair, 4, 2, 4);
+    desk.study.settings.attention_checks = 2;
+    let person = desk.newcomer();
+    assert_eq!(desk.give(person, Given::Attention { number: 0, choice: 1 }), Err(Refusal::OutOfTurn));
+}
+
+#[test]
+fn the_last_answer_is_the_end_even_if_nobody_looks() {
+    let desk = study(Mode::Pair, 1, 1, 1);
+    let person = desk.newcomer();
+    desk.answer(person);
+    desk.answer(person);
+    assert_eq!(desk.data().participants[0].status, Status::Complete);
+}
+
+#[test]
+fn an_old_page_does_not_end_a_walk_elsewhere() {
+    let desk = study(Mode::Follow, 1, 1, 1);
+    let person = desk.newcomer();
+    let slot = desk.held(person).slot;
+    desk.give(person, Given::Move { slot: slot.clone(), seq: 0, to: 0 }).unwrap();
+    assert_eq!(desk.give(person, Given::Stop { slot: slot.clone(), seq: 0, looks: 0 }), Err(Refusal::OutOfTurn));
+    desk.give(person, Given::Stop { slot, seq: 1, looks: 0 }).unwrap();
+}
+
+#[test]
+fn nobody_is_promised_more_than_is_left() {
+    let mut desk = study(Mode::Pair, 3, 1, 2);
+    let first = desk.newcomer();
+    let second = desk.newcomer();
+    assert_eq!([first, second].map(|person| desk.ask(|book| book.done(person)).expected), [2, 1]);
+    desk.study.settings.least_items = 2;
+    let token = desk.ask(|book| book.invite(1)).tokens.remove(0);
+    assert_eq!(desk.come(&Arrival::Link(token)), Err(Entry::Full));
+}
+
+#[test]
+fn a_personal_link_is_enough_to_be_forgotten() {
+    let desk = study(Mode::Pair, 1, 1, 1);
+    let token = desk.ask(|book| book.invite(1)).tokens.remove(0);
+    desk.come(&Arrival::Link(token.clone())).unwrap();
+    assert!(desk.study.forget(&format!("https://study.example.org/t/{token}"), false).unwrap().is_done);
+    assert!(desk.data().participants.is_empty());
+}
+
+#[test]
+fn a_clock_that_is_set_back_keeps_no_item_from_others() {
+    let mut desk = study(Mode::Pair, 1, 1, 1);
+    let person = desk.newcomer();
+    desk.answer(person);
+    desk.held(person);
+    desk.now_ms -= 500_000;
+    let other = desk.newcomer();
+    desk.answer(other);
+    assert!(matches!(desk.stage(other), Stage::Item(_)));
 }
 
 fn recruit(person: &str, session: &str) -> Arrival {

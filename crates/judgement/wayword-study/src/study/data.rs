@@ -60,6 +60,10 @@ pub struct Participant {
     pub seen_ms: i64,
     /// How often the questions about the task were answered wrongly: 0, 1 or 2.
     pub misunderstood: u32,
+    /// Whether they were answered rightly in the end, or there are none.
+    pub understood: bool,
+    /// What the recruiter said of the submission when its list was last imported.
+    pub recruiter_status: Option<String>,
     /// The attention checks that were answered, in order.
     pub attention: Vec<Passed>,
     /// How many items were to be answered.

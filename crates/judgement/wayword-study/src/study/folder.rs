@@ -51,6 +51,7 @@ impl Study {
             return Err(StudyError::refused(problem, "give another --out; a study that people see is not changed"));
         }
         fs::create_dir_all(self.folder.join(PICTURES)).map_err(StudyError::io(&self.folder, "make the folder"))?;
+        keep_private(&self.folder)?;
         self.write_lines(ITEMS, &self.items)?;
         self.write_lines(ROUTES, &self.routes)?;
         self.write_lines(SCENES, &self.scenes)?;
@@ -59,6 +60,12 @@ impl Study {
         Store::open(&self.database())?;
         let plan = serde_json::to_vec_pretty(&self.plan).map_err(|error| self.wrong(PLAN, &error))?;
         self.write(PLAN, &plan)
+    }
+
+    /// Whether a folder holds a study.
+    #[must_use]
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(PLAN).is_file()
     }
 
     /// Reads a study.
@@ -145,6 +152,18 @@ impl Study {
     fn wrong(&self, name: &str, problem: &dyn std::fmt::Display) -> StudyError {
         wrong(&self.folder, name, problem)
     }
+}
+
+/// Lets only the owner into a folder, because people's answers will be in it.
+fn keep_private(folder: &Path) -> Result<(), StudyError> {
+    #[cfg(unix)]
+    {
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o700);
+        fs::set_permissions(folder, mode).map_err(StudyError::io(folder, "restrict access to"))?;
+    }
+    #[cfg(not(unix))]
+    let _ = folder;
+    Ok(())
 }
 
 fn wrong(folder: &Path, name: &str, problem: &dyn std::fmt::Display) -> StudyError {

@@ -27,6 +27,12 @@ pub struct Settings {
     pub write_first: bool,
     /// How many attention checks a participant gets, 0 to 4.
     pub attention_checks: u32,
+    /// The fewest items for which somebody new is let in. Near the end of a study fewer may be left than a participant gets.
+    #[serde(default)]
+    pub least_items: u32,
+    /// The language of the texts, as `en` or `hi-IN`; empty where they are in the pages' language, English.
+    #[serde(default)]
+    pub text_language: String,
     /// After how many seconds without a sign of life an item goes to somebody else.
     pub lease_s: u64,
     /// What shows that the task was understood.
@@ -88,7 +94,19 @@ pub struct Codes {
     pub no_consent: String,
 }
 
+/// A study of this length or longer needs two failed checks (Prolific's rule), minutes.
+pub(crate) const LONG_MINUTES: u32 = 5;
+/// Most answers of a question.
+const MOST_ANSWERS: usize = 10;
+
 impl Settings {
+    /// All that is read before the consent.
+    pub(crate) fn consent_words(&self) -> Vec<&str> {
+        let mut words: Vec<&str> = self.about.iter().map(String::as_str).collect();
+        words.extend([self.agreement.as_str(), &self.title, &self.contact, &self.retention]);
+        words
+    }
+
     /// The settings that a new study begins with.
     #[must_use]
     pub fn of_mode(mode: Mode, per_participant: u32) -> Self {
@@ -117,7 +135,9 @@ impl Settings {
             agreement: "I am at least 18 years old. I have read this, and I want to take part.".to_owned(),
             examples: Vec::new(),
             write_first: mode == Mode::Rate,
-            attention_checks: u32::from(per_participant > 2) + u32::from(per_participant > 4),
+            attention_checks: if per_participant > 2 { 2 } else { 0 },
+            least_items: 1,
+            text_language: String::new(),
             lease_s: 20 * 60,
             questions: Question::of_mode(mode),
             recruiter: Recruiter::Links,
@@ -131,15 +151,23 @@ impl Settings {
     /// The first problem.
     pub fn check(&self) -> Result<(), String> {
         for question in &self.questions {
-            if question.right >= question.answers.len() {
+            if question.right >= question.answers.len() || question.answers.len() > MOST_ANSWERS {
                 return Err(format!(
-                    "questions: the right answer of {:?} is not among its answers; they count from 0",
+                    "questions: the right answer of {:?} is not among its answers (they count from 0), or there are more than {MOST_ANSWERS}",
                     question.text
                 ));
             }
         }
         if self.attention_checks > 4 {
             return Err("attention_checks: at most 4".to_owned());
+        }
+        if self.attention_checks == 1 && self.minutes >= LONG_MINUTES {
+            let rule = "in a study of 5 minutes or more one failed check says nothing (Prolific's rule)";
+            return Err(format!("attention_checks: {rule}; give 2 or more, or 0"));
+        }
+        let is_tag = |letter: char| letter.is_ascii_alphanumeric() || letter == '-';
+        if !self.text_language.chars().all(is_tag) {
+            return Err("text_language: give a tag like en or hi-IN".to_owned());
         }
         if self.lease_s == 0 || self.lease_s > 7 * 24 * 3600 {
             return Err("lease_s: give 1 to 604800 seconds".to_owned());
@@ -198,5 +226,37 @@ impl Question {
                 ),
             ],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_new_study_is_set_to_is_allowed() {
+        for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
+            for items in [1, 2, 3, 10] {
+                Settings::of_mode(mode, items).check().unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn the_recruiters_address_is_https() {
+        let with = |url: &str| {
+            let codes = Codes { return_url: url.to_owned(), ..Codes::default() };
+            Settings { codes, ..Settings::of_mode(Mode::Pair, 3) }.check()
+        };
+        with("https://app.prolific.com/submissions/complete?cc={code}").unwrap();
+        for wrong in ["http://a.example/{code}", "javascript:alert('{code}')", "https://a.example/"] {
+            assert!(with(wrong).unwrap_err().contains("return_url"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_check_that_could_fail_nobody_is_refused() {
+        let settings = Settings { attention_checks: 1, minutes: 5, ..Settings::of_mode(Mode::Pair, 3) };
+        assert!(settings.check().unwrap_err().contains("attention_checks"));
     }
 }

@@ -214,7 +214,7 @@ pub struct StudyResults {
 pub struct StudyForget {
     /// Folder of the study.
     pub study: PathBuf,
-    /// The participant: our id (`status --participants` lists them) or the recruiter's.
+    /// The participant: our id (`status --participants` lists them), the recruiter's, or a personal link.
     #[arg(long, value_name = "ID")]
     pub participant: String,
     /// Only say what would be removed.

@@ -96,6 +96,8 @@ pub(super) fn add_person(data: &mut Data, status: Status) -> String {
         finished_ms: is_over.then_some(consented_ms + 600_000 + 1000 * number as i64),
         seen_ms: consented_ms + 600_000,
         misunderstood: u32::from(number.is_multiple_of(5)),
+        understood: status != Status::ScreenedOut,
+        recruiter_status: None,
         attention: vec![Passed { number: 0, passed: status != Status::AttentionFailed, at_ms: consented_ms + 60_000 }],
         expected: 6,
     });

@@ -64,7 +64,8 @@ addEventListener('submit', async (event) => {
   const body = [...new FormData(form)];
   if (pressed && pressed.name) body.push([pressed.name, pressed.value]);
   const answer = { url: form.getAttribute('action'), body };
-  if (who()) {
+  // Leaving is not kept: who thinks better of it while the network is away must not be taken at the old word.
+  if (who() && answer.url !== '/withdraw') {
     answer.key = box() + Date.now() + ' ' + Math.random();
     kept.set(answer.key, JSON.stringify(answer));
   }

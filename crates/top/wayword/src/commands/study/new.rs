@@ -61,12 +61,12 @@ pub(super) fn make(args: &StudyNew, output: &Output) -> Result<(), Error> {
     };
     let platform = view::open(&args.platform)?;
     check_pictures(args, mode, &*platform)?;
-    if Study::open(&args.out).is_ok() {
+    if Study::is_in(&args.out) {
         let problem = format!("{}: there is a study already", args.out.display());
         return Err(Error::usage(problem, "give another --out; a study that people see is not changed"));
     }
     let conditions = conditions(args)?;
-    let mut walks = walks(args, mode, &conditions, &*platform)?;
+    let mut walks = walks(args, mode, &conditions, &*platform, output)?;
     let asked = args.items as usize;
     // One more path than is asked for is for practice.
     walks.truncate(asked + 1);

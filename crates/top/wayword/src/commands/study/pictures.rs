@@ -87,7 +87,8 @@ fn place(
     let position = graph.position(id).ok_or_else(unknown)?;
     let level = graph.level(id);
     let frame = Frame { pose: Pose::level(position, Heading::NORTH), viewpoint: Some(id.clone()), level };
-    let panorama = file_name(&["panorama", scene.as_str(), id.as_str()]);
+    // The name holds all that the picture depends on: a command that was stopped and given anew with other paths draws others.
+    let panorama = file_name(&["panorama", platform.name(), scene.as_str(), id.as_str(), &format!("{position:?}")]);
     let file = folder.join(&panorama);
     // A command that was stopped goes on with the pictures that it has.
     if !file.is_file() {
@@ -108,7 +109,7 @@ pub(super) fn film(walk: &Walk, platform: &dyn Platform, folder: &FilePath) -> R
     let between = (FILM / walk.path.frames.len().max(1)).saturating_sub(1).min(BETWEEN);
     let steps = steps(&walk.path, if draws_anywhere { between } else { 0 })?;
     let picture = |(number, step): (usize, &Step)| {
-        let name = file_name(&["film", walk.path.scene.as_str(), &walk.name, &number.to_string()]);
+        let name = file_name(&["film", platform.name(), walk.path.scene.as_str(), &format!("{:?}", step.frame)]);
         let file = folder.join(&name);
         if !file.is_file() {
             let view = platform.look(&walk.path.scene, &step.frame, Gaze::quarter(step.frame.pose.heading))?;

@@ -5,6 +5,7 @@ use crate::{
     count::count,
     episodes,
     error::Error,
+    output::Output,
     texts,
 };
 use rand::{Rng as _, seq::SliceRandom as _};
@@ -88,11 +89,21 @@ pub(super) fn walks(
     mode: Mode,
     conditions: &[Condition],
     platform: &dyn Platform,
+    output: &Output,
 ) -> Result<Vec<Walk>, Error> {
-    let bare = bare(args, mode, platform)?;
+    let mut bare = bare(args, mode, platform)?;
+    if mode == Mode::Follow {
+        let before = bare.len();
+        bare = walkable(bare, platform)?;
+        if bare.len() < before {
+            let left = count(before - bare.len(), "path");
+            output.say(format_args!(
+                "left out: {left} whose viewpoints do not lead from the start to a goal 3 m away or more"
+            ));
+        }
+    }
     let sets = sets(conditions)?;
     let mut drawn = rng(args.seed, &["study", "texts"]);
-    let elsewhere = elsewhere(&bare, platform, args.seed)?;
     // Of several texts of one item, one is drawn.
     let mut texts: Vec<BTreeMap<&str, String>> = Vec::new();
     for item in &bare {
@@ -109,6 +120,11 @@ pub(super) fn walks(
         }
         texts.push(of_item);
     }
+    // Only a path whose text there is can stand for another one.
+    let source =
+        conditions.iter().find(|condition| condition.kind == Kind::OtherPath).map(|condition| &condition.source);
+    let has_source = |at: usize| source.is_some_and(|source| texts[at].contains_key(source.as_str()));
+    let elsewhere = elsewhere(&bare, platform, args.seed, &has_source)?;
     let told = |at: usize| -> Option<Vec<Told>> {
         let text = |condition: &Condition| {
             let text = match condition.kind {
@@ -138,6 +154,27 @@ pub(super) fn walks(
         Some(Walk { name, path, viewpoints, start_heading, told: told.remove(&at)? })
     };
     Ok(order.into_iter().filter_map(walk).collect())
+}
+
+/// The paths that can be walked over the viewpoint graph, and whose goal is not where they begin: whoever stops there at once would have
+/// arrived.
+fn walkable(bare: Vec<Bare>, platform: &dyn Platform) -> Result<Vec<Bare>, Error> {
+    let mut distances: BTreeMap<SceneId, Distances> = BTreeMap::new();
+    let mut all = Vec::new();
+    for item in bare {
+        let scene = &item.path.scene;
+        if !distances.contains_key(scene) {
+            distances.insert(scene.clone(), Distances::new(&*platform.graph(scene)?));
+        }
+        let ends = item.viewpoints.first().zip(item.viewpoints.last());
+        let apart_m = ends.and_then(|(start, goal)| distances.get(scene)?.metres(start, goal));
+        let graph = platform.graph(scene)?;
+        let is_known = item.viewpoints.iter().all(|viewpoint| graph.position(viewpoint).is_some());
+        if is_known && apart_m.is_some_and(|apart_m| apart_m >= SAME_GOAL_M) {
+            all.push(item);
+        }
+    }
+    Ok(all)
 }
 
 /// The texts of each run by item.
@@ -185,8 +222,13 @@ fn bare(args: &StudyNew, mode: Mode, platform: &dyn Platform) -> Result<Vec<Bare
     Ok(all)
 }
 
-/// For each path, another one of the same scene that ends elsewhere.
-fn elsewhere(bare: &[Bare], platform: &dyn Platform, seed: u64) -> Result<Vec<Option<usize>>, Error> {
+/// For each path, another one of the same scene that ends elsewhere, among those for which `may_stand` is true.
+fn elsewhere(
+    bare: &[Bare],
+    platform: &dyn Platform,
+    seed: u64,
+    may_stand: &dyn Fn(usize) -> bool,
+) -> Result<Vec<Option<usize>>, Error> {
     let mut distances: BTreeMap<SceneId, Distances> = BTreeMap::new();
     let mut candidates = Vec::new();
     for item in bare {
@@ -207,5 +249,13 @@ fn elsewhere(bare: &[Bare], platform: &dyn Platform, seed: u64) -> Result<Vec<Op
         let apart_m = distances.get(&a.scene).and_then(|distances| distances.metres(&a.goal, &b.goal));
         apart_m.is_none_or(|apart_m| apart_m >= SAME_GOAL_M)
     };
-    Ok((0..candidates.len()).map(|at| other_path(&candidates, at, seed, &is_far)).collect())
+    let standing: Vec<usize> = (0..bare.len()).filter(|at| may_stand(*at)).collect();
+    let other = |at: usize| {
+        // The path itself comes first, and the others after it.
+        let among: Vec<usize> =
+            std::iter::once(at).chain(standing.iter().copied().filter(|other| *other != at)).collect();
+        let candidates: Vec<Candidate> = among.iter().map(|index| candidates[*index].clone()).collect();
+        other_path(&candidates, 0, seed, &is_far).map(|found| among[found])
+    };
+    Ok((0..bare.len()).map(other).collect())
 }
