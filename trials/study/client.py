@@ -259,7 +259,7 @@ class Browser:
                 self.cookies[key] = value
             else:
                 self.cookies.pop(key, None)
-        self.log.asked("full" if reply.status == 503 and b"All places" in reply.body else kind, reply)
+        self.log.asked("full" if b"All places" in reply.body else kind, reply)
         return reply
 
     async def follow(self, reply: Reply) -> Reply:

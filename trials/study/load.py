@@ -68,16 +68,16 @@ class Trial:
             if page.name == "done":
                 return page.at
             if page.name == "message":
-                if page.status == 503:
+                is_full = "All places" in page.text
+                if is_full:
                     if self.is_full:
                         return "no place"
                     await asyncio.sleep(rng.uniform(1, 3))
                 elif page.status == 403:
                     self.faults.add(f"a participant ({behaviour}) is not known any more", page.text[page.text.find("<h1") :][:120])
                     return "not known"
-                was_full = page.status == 503
                 page = await participant.open("/")  # where the page's button leads
-                if was_full and page.status == 200 and page.name == "message":
+                if is_full and page.status == 200 and page.name == "message":
                     self.faults.add("\"Try again\" on the page of a full study leads to a page that knows no study")
                     page = await participant.open(participant.link)
                 continue

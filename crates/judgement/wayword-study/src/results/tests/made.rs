@@ -173,28 +173,6 @@ pub(super) fn small(mode: Mode) -> Data {
     data
 }
 
-/// A study of so many people who all finish, over 60 routes.
-pub(super) fn large(mode: Mode, people: usize) -> Data {
-    let mut data = small(mode);
-    (data.participants, data.slots, data.items, data.routes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let shown: &[&[usize]] = if mode == Mode::Pair { &[&[0, 1], &[0, 2], &[1, 2]] } else { &[&[0], &[1], &[2]] };
-    for _ in 0..60 {
-        let route = add_route(&mut data);
-        for conditions in shown {
-            add_item(&mut data, route, conditions);
-        }
-    }
-    for number in 0..people {
-        let person = add_person(&mut data, Status::Complete);
-        for at in 0..12 {
-            let item = ((12 * number + 7 * at) % data.items.len()) as u32;
-            let answer = answer(&data, &person, item);
-            add_slot(&mut data, &person, item, Some(answer));
-        }
-    }
-    data
-}
-
 fn answer(data: &Data, person: &str, item: u32) -> Answer {
     let told = &data.items[item as usize].texts[0];
     let better = if told.condition == "humans" { 2 } else { u64::from(told.condition == "ours") };

@@ -3,7 +3,7 @@
 mod exports;
 mod figures;
 mod hostile;
-mod look;
 mod made;
+mod page;
 mod planned;
 mod reader;

@@ -57,8 +57,10 @@ fn links(study: &Study, count: u32, url: &str) -> Result<Links, Error> {
 fn status(args: &StudyStatus, output: &Output) -> Result<(), Error> {
     let study = Study::open(&args.study)?;
     let progress = study.progress()?;
+    // Results that were written before a deletion still hold what was deleted.
+    let exports = if progress.forgotten > 0 { study.exports()? } else { Vec::new() };
     let participants = args.participants.then(|| study.data().map(|data| data.participants)).transpose()?;
-    let standing = Standing { progress, participants };
+    let standing = Standing { progress, exports, participants };
     output.data(&standing, &standing);
     Ok(())
 }

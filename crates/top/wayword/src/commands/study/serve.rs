@@ -58,6 +58,11 @@ fn tell(study: &Study, started: &Started, args: &StudyServe, output: &Output) ->
         output
             .say("study.toml: `contact` is empty: participants could ask nobody. Fill it in before you invite anybody");
     }
+    if let Recruiter::Parameters { only_study, .. } = &study.settings.recruiter
+        && only_study.is_empty()
+    {
+        output.say("study.toml: `only_study` is empty: links of any study of the recruiter are let in");
+    }
     output.say("Ctrl-C stops it; the same command goes on");
     Ok(())
 }

@@ -22,6 +22,9 @@ impl fmt::Display for Links {
 pub(super) struct Standing {
     #[serde(flatten)]
     pub(super) progress: Progress,
+    /// Folders of results, where somebody was forgotten: they may still hold the answers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) exports: Vec<PathBuf>,
     #[serde(rename = "list", skip_serializing_if = "Option::is_none")]
     pub(super) participants: Option<Vec<Participant>>,
 }
@@ -50,6 +53,10 @@ impl fmt::Display for Standing {
         }
         if progress.unused_links > 0 {
             write!(f, "; {} not used", count(progress.unused_links, "personal link"))?;
+        }
+        for folder in &self.exports {
+            let folder = folder.display();
+            write!(f, "\n{folder} may hold answers of somebody who was forgotten since: write the results again")?;
         }
         for participant in self.participants.iter().flatten() {
             write!(f, "\n{} {}", participant.id, word(participant.status))?;

@@ -1,9 +1,6 @@
-//! The page itself, and one to look at.
+//! The page itself.
 
-use super::{
-    figures::of,
-    made::{large, small},
-};
+use super::{figures::of, made::small};
 use crate::Mode;
 
 #[test]
@@ -23,18 +20,5 @@ fn the_page_asks_nobody_for_anything_and_runs_nothing() {
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), all, "ids are unique");
-    }
-}
-
-/// Writes results to look at: `WAYWORD_LOOK=FOLDER cargo test -p wayword-study -- --ignored look`.
-#[test]
-#[ignore = "writes files to look at"]
-fn write_results_to_look_at() {
-    let folder = std::path::PathBuf::from(std::env::var("WAYWORD_LOOK").unwrap());
-    for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
-        of(&small(mode)).write(&folder.join(mode.name())).unwrap();
-        let (data, begun) = (large(mode, 200), std::time::Instant::now());
-        of(&data).write(&folder.join(format!("large-{}", mode.name()))).unwrap();
-        println!("{} of 200 people: {:.1} s", mode.name(), begun.elapsed().as_secs_f64());
     }
 }
