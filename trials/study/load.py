@@ -231,7 +231,8 @@ class Trial:
             wrong.add(f"an item has {few} answers of {facts.per_item}")
         honest = ("steady", "reload", "twice", "vanish")
         for (behaviour, action, status), number in sorted(self.site.refusals.items()):
-            if behaviour in honest:
+            # The study became full while they read what they consent to.
+            if behaviour in honest and (action, status) != ("/consent", 409):
                 wrong.add(f"{status} to {action} of participants who did nothing wrong ({behaviour})", f"{number} times")
 
         print(f"mode {facts.mode}, {len(facts.counted)} items x {facts.per_item} answers, {facts.plan['per_participant']} per participant, lease {self.options.lease} s")
