@@ -6,6 +6,9 @@ use wayword_core::{Platform, SceneId};
 use wayword_formats::Episode;
 use wayword_metrics::{Atlas, Demand, Distances};
 
+/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
+pub(crate) const SAME_GOAL_M: f64 = 3.0;
+
 /// The demands of the episodes of a platform. The distances of a scene are computed once.
 pub struct Demands<'a> {
     platform: &'a dyn Platform,

@@ -1,7 +1,13 @@
 //! Sets of instructions, joined by item.
 
 use super::kept::{Kept, last_part};
-use crate::{cli::By, demands::Demands, episodes, error::Error, texts};
+use crate::{
+    cli::By,
+    demands::{Demands, SAME_GOAL_M},
+    episodes,
+    error::Error,
+    texts,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::Platform;
 use wayword_formats::Episode;
@@ -12,9 +18,6 @@ use wayword_navigation::{
     comparison::{Set, empty_set, swapped_set},
     swap::{Candidate, Swap, other_path, swapped},
 };
-
-/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
-const SAME_GOAL_M: f64 = 3.0;
 
 /// An item that every set has.
 #[derive(Debug)]

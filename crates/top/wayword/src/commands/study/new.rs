@@ -18,8 +18,6 @@ use wayword_core::Platform;
 use wayword_study::{Codes, Condition, Item, Mode, Plan, Recruiter, Route, Settings, Study, Told};
 use wayword_synthesis::style::built_in;
 
-/// Platforms whose pictures this program draws itself, from data that the user has.
-const DRAWN: [&str; 2] = ["house", "habitat"];
 /// Most examples of a style that those who rate see.
 const EXAMPLES: usize = 3;
 
@@ -114,7 +112,7 @@ fn check_pictures(args: &StudyNew, mode: Mode, platform: &dyn Platform) -> Resul
         let problem = "--mode follow: a recording shows one way only, and has no viewpoint graph that one could walk";
         return Err(Error::usage(problem, "use --mode rate or --mode pair"));
     }
-    if !DRAWN.contains(&name) && !args.i_have_the_right {
+    if !pictures::DRAWN.contains(&name) && !args.i_have_the_right {
         let problem = format!("the pictures of platform {name} are somebody's, and participants would see them");
         return Err(Error::usage(problem, "read their terms; if you may show them, give --i-have-the-right"));
     }

@@ -21,6 +21,8 @@ use std::{
 use wayword_core::{Frame, Gaze, Heading, Platform, Pose, SceneId, ViewpointGraph, ViewpointId};
 use wayword_study::{Picture, Place, Scene};
 
+/// Platforms whose pictures this program draws itself, from any place, and from data that the user has.
+pub(super) const DRAWN: [&str; 2] = ["house", "habitat"];
 /// Width of a panorama, pixels: a phone shows a third of it, a desk's screen half.
 const PANORAMA_PX: u32 = 2400;
 /// Most places between two frames of a film, on platforms that can draw there.
@@ -105,7 +107,7 @@ fn place(
 /// When nothing of it can be drawn, or a picture not written.
 pub(super) fn film(walk: &Walk, platform: &dyn Platform, folder: &FilePath) -> Result<Vec<Picture>, Error> {
     interrupt::check()?;
-    let draws_anywhere = matches!(platform.name(), "house" | "habitat") && walk.path.motion.is_known();
+    let draws_anywhere = DRAWN.contains(&platform.name()) && walk.path.motion.is_known();
     let between = (FILM / walk.path.frames.len().max(1)).saturating_sub(1).min(BETWEEN);
     let steps = steps(&walk.path, if draws_anywhere { between } else { 0 })?;
     let picture = |(number, step): (usize, &Step)| {

@@ -3,6 +3,7 @@
 use crate::{
     cli::{By, Control, StudyNew},
     count::count,
+    demands::{Demands, SAME_GOAL_M},
     episodes,
     error::Error,
     output::Output,
@@ -12,6 +13,7 @@ use rand::{Rng as _, seq::SliceRandom as _};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::PathBuf,
+    sync::Arc,
 };
 use wayword_core::{Heading, Path, Platform, SceneId, ViewpointId, rng};
 use wayword_formats::{Format, detect, jsonl};
@@ -20,8 +22,6 @@ use wayword_navigation::swap::{Candidate, other_path};
 use wayword_study::{Condition, Kind, Mode, Told};
 use wayword_world::path_of;
 
-/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
-const SAME_GOAL_M: f64 = 3.0;
 /// The conditions of the controls.
 const PEOPLE: &str = "people";
 const OTHER_PATH: &str = "other-path";
@@ -91,10 +91,11 @@ pub(super) fn walks(
     platform: &dyn Platform,
     output: &Output,
 ) -> Result<Vec<Walk>, Error> {
+    let demands = Demands::new(platform);
     let mut bare = bare(args, mode, platform)?;
     if mode == Mode::Follow {
         let before = bare.len();
-        bare = walkable(bare, platform)?;
+        bare = walkable(bare, platform, &demands)?;
         if bare.len() < before {
             let left = count(before - bare.len(), "path");
             output.say(format_args!(
@@ -124,7 +125,10 @@ pub(super) fn walks(
     let source =
         conditions.iter().find(|condition| condition.kind == Kind::OtherPath).map(|condition| &condition.source);
     let has_source = |at: usize| source.is_some_and(|source| texts[at].contains_key(source.as_str()));
-    let elsewhere = elsewhere(&bare, platform, args.seed, &has_source)?;
+    let elsewhere = match source {
+        Some(_) => elsewhere(&bare, &demands, args.seed, &has_source)?,
+        None => vec![None; bare.len()],
+    };
     let told = |at: usize| -> Option<Vec<Told>> {
         let text = |condition: &Condition| {
             let text = match condition.kind {
@@ -158,16 +162,13 @@ pub(super) fn walks(
 
 /// The paths that can be walked over the viewpoint graph, and whose goal is not where they begin: whoever stops there at once would have
 /// arrived.
-fn walkable(bare: Vec<Bare>, platform: &dyn Platform) -> Result<Vec<Bare>, Error> {
-    let mut distances: BTreeMap<SceneId, Distances> = BTreeMap::new();
+fn walkable(bare: Vec<Bare>, platform: &dyn Platform, demands: &Demands<'_>) -> Result<Vec<Bare>, Error> {
     let mut all = Vec::new();
     for item in bare {
         let scene = &item.path.scene;
-        if !distances.contains_key(scene) {
-            distances.insert(scene.clone(), Distances::new(&*platform.graph(scene)?));
-        }
+        let distances = demands.distances(scene)?;
         let ends = item.viewpoints.first().zip(item.viewpoints.last());
-        let apart_m = ends.and_then(|(start, goal)| distances.get(scene)?.metres(start, goal));
+        let apart_m = ends.and_then(|(start, goal)| distances.metres(start, goal));
         let graph = platform.graph(scene)?;
         let is_known = item.viewpoints.iter().all(|viewpoint| graph.position(viewpoint).is_some());
         if is_known && apart_m.is_some_and(|apart_m| apart_m >= SAME_GOAL_M) {
@@ -225,18 +226,18 @@ fn bare(args: &StudyNew, mode: Mode, platform: &dyn Platform) -> Result<Vec<Bare
 /// For each path, another one of the same scene that ends elsewhere, among those for which `may_stand` is true.
 fn elsewhere(
     bare: &[Bare],
-    platform: &dyn Platform,
+    demands: &Demands<'_>,
     seed: u64,
     may_stand: &dyn Fn(usize) -> bool,
 ) -> Result<Vec<Option<usize>>, Error> {
-    let mut distances: BTreeMap<SceneId, Distances> = BTreeMap::new();
+    let mut distances: BTreeMap<SceneId, Arc<Distances>> = BTreeMap::new();
     let mut candidates = Vec::new();
     for item in bare {
         let scene = item.path.scene.clone();
         let goal =
             item.viewpoints.last().or_else(|| item.path.frames.last().and_then(|frame| frame.viewpoint.as_ref()));
-        if goal.is_some() && !distances.contains_key(&scene) {
-            distances.insert(scene.clone(), Distances::new(&*platform.graph(&scene)?));
+        if goal.is_some() {
+            distances.insert(scene.clone(), demands.distances(&scene)?);
         }
         // A path without viewpoints ends at a place of its own.
         let goal = goal.cloned().or_else(|| ViewpointId::new(format!("end-of-{}", item.id)).ok());
