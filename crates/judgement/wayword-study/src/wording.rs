@@ -11,7 +11,9 @@ pub struct Scale {
     pub levels: [&'static str; 5],
 }
 
-const AGREEMENT: [&str; 5] = ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
+/// How far one agrees; attention checks use it too.
+pub(crate) const AGREEMENT: [&str; 5] =
+    ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
 
 /// After a walk: the three statements of HEAR's study (Zhao et al. 2024), in our words.
 pub const STATEMENTS: [Scale; 3] = [
@@ -43,6 +45,3 @@ pub const QUESTIONS: [Scale; 4] = [
         levels: ["Certainly not", "Probably not", "Perhaps", "Probably", "Certainly"],
     },
 ];
-
-/// The levels of an attention check.
-pub(crate) const AGREEMENT_LEVELS: [&str; 5] = AGREEMENT;

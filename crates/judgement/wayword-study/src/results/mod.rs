@@ -96,7 +96,7 @@ pub fn results(data: &Data, now_ms: i64) -> Result<Results, StudyError> {
     }
     let names = Names::new(data);
     let (answered, problems) = given::answered(data, &names);
-    let most_failed = people::most_failed(data.settings.minutes);
+    let most_failed = data.settings.most_failed();
     let version = |whose| Version::new(data, &answered, whose, most_failed);
     let people = People::new(data, &names, &answered, now_ms);
     let sources = Sources { data, names: &names, answered: &answered, most_failed };

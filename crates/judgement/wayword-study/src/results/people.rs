@@ -90,14 +90,6 @@ pub struct Failed {
     pub is_over: bool,
 }
 
-/// From this length on two attention checks have to be failed before a submission may be rejected (Prolific).
-const LONG_MINUTES: u32 = 5;
-
-/// How many failed attention checks are let pass.
-pub(super) fn most_failed(minutes: u32) -> usize {
-    usize::from(minutes >= LONG_MINUTES)
-}
-
 impl People {
     pub(super) fn new(data: &Data, names: &Names<'_>, answered: &[Answered<'_>], now_ms: i64) -> Self {
         let people = &data.participants;
@@ -213,7 +205,7 @@ impl<'a> Tally<'a> {
 
 impl Attention {
     fn new(data: &Data, names: &Names<'_>) -> Self {
-        let most_failed = most_failed(data.settings.minutes);
+        let most_failed = data.settings.most_failed();
         let failed = |person: &Participant| {
             let checks: Vec<u32> =
                 person.attention.iter().filter(|check| !check.passed).map(|check| check.number + 1).collect();

@@ -8,7 +8,7 @@ use super::{
     sheet::{Cell, Column, Sheet, column},
     walks::Walks,
 };
-use crate::{Answer, Choice, Data, Kind, Mode, Participant, SlotState, Status, wording::Scale};
+use crate::{Answer, Choice, Data, Kind, Mode, Participant, SlotState, wording::Scale};
 use std::collections::BTreeMap;
 
 /// What all files are made from.
@@ -81,7 +81,7 @@ impl Sources<'_> {
             since(one.slot.given_ms),
             one.slot.answered_ms.map_or(Cell::Empty, since),
             Cell::number(one.seconds(), 3),
-            Cell::text(status(one.participant.status)),
+            Cell::text(one.participant.status.name()),
             is_in(Whose::Everybody),
             is_in(Whose::Finished),
         ];
@@ -193,7 +193,7 @@ impl Sources<'_> {
         let is_in = |whose: Whose| Cell::yes(whose.takes(person, self.most_failed));
         vec![
             Cell::text(self.names.of(&person.id)),
-            Cell::text(status(person.status)),
+            Cell::text(person.status.name()),
             Cell::Whole(i64::from(person.expected)),
             Cell::count(given),
             Cell::count(done),
@@ -330,16 +330,6 @@ fn word(choice: Choice) -> &'static str {
         Choice::B => "b",
         Choice::Tie => "tie",
         Choice::Bad => "bad",
-    }
-}
-
-fn status(status: Status) -> &'static str {
-    match status {
-        Status::Started => "started",
-        Status::Complete => "complete",
-        Status::Withdrawn => "withdrawn",
-        Status::ScreenedOut => "screened_out",
-        Status::AttentionFailed => "attention_failed",
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
     store::{Book, Done, Entry, Held, MOST_MOVES, Outcome, Stage},
     study::{Mode, Route, Scene, Status, Study, StudyError},
     token::hash,
-    wording::{AGREEMENT_LEVELS, QUESTIONS, STATEMENTS},
+    wording::{AGREEMENT, QUESTIONS, STATEMENTS},
 };
 use minijinja::{Environment, Value, context};
 use wayword_core::{Heading, ViewpointId};
@@ -165,9 +165,9 @@ impl Page {
                 },
             ),
             Stage::Attention { number, level } => {
-                let asked = AGREEMENT_LEVELS[usize::from(level.clamp(1, 5)) - 1];
+                let asked = AGREEMENT[usize::from(level.clamp(1, 5)) - 1];
                 let text = format!("This is an attention check. Please choose \u{201c}{asked}\u{201d}.");
-                under("attention", context! { number, text, levels => AGREEMENT_LEVELS, ..progress(done) })
+                under("attention", context! { number, text, levels => AGREEMENT, ..progress(done) })
             }
             Stage::Item(held) => match Self::of_item(book, &held, around, done) {
                 Some(page) => page,

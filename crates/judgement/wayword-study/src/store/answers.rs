@@ -61,10 +61,10 @@ impl Book<'_> {
             Given::Stop { slot, seq, looks } => self.with(person, &slot, |held| self.stop(held, seq, looks)),
             Given::Rated { slot, ratings } => self.with(person, &slot, |held| {
                 let is_early = self.study.settings.write_first && held.own_text.is_none();
-                self.answer(held, Mode::Rate, is_early, &Answer::Rate { ratings })
+                self.answer(person, held, Mode::Rate, is_early, &Answer::Rate { ratings })
             }),
             Given::Chosen { slot, choice } => {
-                self.with(person, &slot, |held| self.answer(held, Mode::Pair, false, &Answer::Pair { choice }))
+                self.with(person, &slot, |held| self.answer(person, held, Mode::Pair, false, &Answer::Pair { choice }))
             }
             Given::Followed { slot, statements } => self.with(person, &slot, |held| {
                 let answer = Answer::Follow {
@@ -72,7 +72,7 @@ impl Book<'_> {
                     looks: held.looks,
                     stopped_ms: held.stopped_ms.unwrap_or(self.now_ms),
                 };
-                self.answer(held, Mode::Follow, held.stopped_ms.is_none(), &answer)
+                self.answer(person, held, Mode::Follow, held.stopped_ms.is_none(), &answer)
             }),
         }
     }
@@ -80,8 +80,7 @@ impl Book<'_> {
     /// Does something with an item that the person holds. What was answered is acknowledged again.
     fn with(&self, person: i64, slot: &str, work: impl FnOnce(&Held) -> Kept) -> Kept {
         let Some(held) = self.named(person, slot)? else { return Ok(Err(Refusal::Unknown)) };
-        let state: String = self.db.query_row("SELECT state FROM slot WHERE id = ?1", [held.id], |row| row.get(0))?;
-        match state.as_str() {
+        match held.state.as_str() {
             "answered" => Ok(Ok(())),
             "live" => work(&held),
             _ => Ok(Err(Refusal::Returned)),
@@ -165,14 +164,14 @@ impl Book<'_> {
         Ok(Ok(()))
     }
 
-    fn answer(&self, held: &Held, of: Mode, is_early: bool, answer: &Answer) -> Kept {
+    fn answer(&self, person: i64, held: &Held, of: Mode, is_early: bool, answer: &Answer) -> Kept {
         if self.study.plan.mode != of || is_early {
             return Ok(Err(Refusal::OutOfTurn));
         }
         let Ok(answer) = serde_json::to_string(answer) else { return Ok(Err(Refusal::Unknown)) };
         let kept = "UPDATE slot SET state = 'answered', answer = ?2, answered_ms = ?3 WHERE id = ?1";
         self.db.execute(kept, params![held.id, answer, self.now_ms])?;
-        self.end_if_done(self.db.query_row("SELECT person FROM slot WHERE id = ?1", [held.id], |row| row.get(0))?)?;
+        self.end_if_done(person)?;
         Ok(Ok(()))
     }
 }

@@ -1,10 +1,7 @@
 //! Who gets which item: the least filled first, nobody the same route twice, and what is left behind goes back.
 
-use super::Book;
-use crate::{
-    study::{Item, StudyError},
-    token::token,
-};
+use super::{Book, people::fresh};
+use crate::study::{Item, StudyError};
 use rusqlite::params;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::seed::derive;
@@ -17,10 +14,9 @@ pub(super) struct Filled {
     pub(super) live: u32,
 }
 
-impl Filled {
-    fn all(self) -> u32 {
-        self.answered + self.live
-    }
+/// How many answers an item has or may get from those who hold it.
+fn taken(filled: &BTreeMap<u32, Filled>, item: u32) -> u32 {
+    filled.get(&item).map_or(0, |filled| filled.answered + filled.live)
 }
 
 impl Book<'_> {
@@ -44,8 +40,7 @@ impl Book<'_> {
     pub(super) fn room(&self) -> Result<u32, StudyError> {
         let filled = self.filled()?;
         let per_item = self.study.plan.per_item;
-        let free =
-            |item: &Item| u64::from(per_item.saturating_sub(filled.get(&item.id).copied().unwrap_or_default().all()));
+        let free = |item: &Item| u64::from(per_item.saturating_sub(taken(&filled, item.id)));
         let open: u64 = self.study.items.iter().filter(|item| !item.is_practice).map(free).sum();
         let routes: BTreeSet<u32> =
             self.study.items.iter().filter(|item| !item.is_practice && free(item) > 0).map(|item| item.route).collect();
@@ -82,15 +77,10 @@ impl Book<'_> {
         let key = |item: &&Item| {
             let known: u32 =
                 item.texts.iter().map(|told| conditions.get(told.condition.as_str()).copied().unwrap_or(0)).sum();
-            (
-                filled.get(&item.id).copied().unwrap_or_default().all(),
-                known,
-                derive(seed, &["item", &name, &item.id.to_string()]),
-            )
+            (taken(&filled, item.id), known, derive(seed, &["item", &name, &item.id.to_string()]))
         };
         let open = |item: &&Item| {
-            let all = filled.get(&item.id).copied().unwrap_or_default().all();
-            !item.is_practice && all < self.study.plan.per_item && !routes.contains(&item.route)
+            !item.is_practice && taken(&filled, item.id) < self.study.plan.per_item && !routes.contains(&item.route)
         };
         let Some(item) = self.study.items.iter().filter(open).min_by_key(key) else { return Ok(false) };
         let position = had.iter().filter(|item| !item.is_practice).count();
@@ -107,8 +97,7 @@ impl Book<'_> {
     }
 
     fn hand_out(&self, person: i64, item: &Item, position: Option<u32>) -> Result<(), StudyError> {
-        let name = token()
-            .map_err(|error| StudyError::refused(format!("the system has no randomness: {error}"), "try again"))?;
+        let name = fresh()?;
         let is_turned = derive(self.study.plan.seed, &["sides", &name]) % 2 == 1;
         self.db.execute(
             "INSERT INTO slot (name, person, item, route, position, state, lease_ms, given_ms, is_turned) \
@@ -123,10 +112,7 @@ impl Book<'_> {
     pub(super) fn hold(&self, slot: i64, item: u32, lease_ms: i64, is_practice: bool) -> Result<bool, StudyError> {
         let until_ms = self.now_ms + self.lease_ms();
         let is_over = lease_ms <= self.now_ms;
-        if is_over
-            && !is_practice
-            && self.filled()?.get(&item).copied().unwrap_or_default().all() >= self.study.plan.per_item
-        {
+        if is_over && !is_practice && taken(&self.filled()?, item) >= self.study.plan.per_item {
             self.db.execute("UPDATE slot SET state = 'returned' WHERE id = ?1 AND state = 'live'", [slot])?;
             return Ok(false);
         }

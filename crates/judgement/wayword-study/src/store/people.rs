@@ -296,16 +296,17 @@ impl Book<'_> {
 
     /// How a participation ended; `None` while it goes on.
     pub(super) fn outcome(&self, person: i64) -> Result<Option<Outcome>, StudyError> {
-        let find = "SELECT status, (SELECT count(*) FROM slot WHERE person = person.id AND state = 'answered' AND position IS NOT NULL) \
-                    FROM person WHERE id = ?1";
-        let (status, answers) = self.db.query_row(find, [person], |row| Ok((status_of(row, 0)?, row.get(1)?)))?;
-        Ok((status != Status::Started).then_some(Outcome { status, answers }))
+        let find = "SELECT status FROM person WHERE id = ?1";
+        match self.db.query_row(find, [person], |row| status_of(row, 0))? {
+            Status::Started => Ok(None),
+            status => Ok(Some(Outcome { status, answers: self.done(person)?.answered })),
+        }
     }
 
     /// Ends it, and says how.
     pub(super) fn end(&self, person: i64, status: Status) -> Result<Stage, StudyError> {
         let ended = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
-        self.db.execute(ended, params![person, name_of(status), self.now_ms])?;
+        self.db.execute(ended, params![person, status.name(), self.now_ms])?;
         Ok(Stage::Over(Outcome { status, answers: self.done(person)?.answered }))
     }
 
@@ -325,7 +326,8 @@ impl Book<'_> {
     }
 }
 
-fn fresh() -> Result<String, StudyError> {
+/// A new token.
+pub(super) fn fresh() -> Result<String, StudyError> {
     token().map_err(|error| StudyError::refused(format!("the system has no randomness: {error}"), "try again"))
 }
 
@@ -334,20 +336,9 @@ pub(super) fn forgotten(book: &Book<'_>) -> Result<u64, StudyError> {
     Ok(book.meta("forgotten")?.and_then(|count| count.parse().ok()).unwrap_or(0))
 }
 
-pub(super) fn name_of(status: Status) -> &'static str {
-    match status {
-        Status::Started => "started",
-        Status::Complete => "complete",
-        Status::Withdrawn => "withdrawn",
-        Status::ScreenedOut => "screened_out",
-        Status::AttentionFailed => "attention_failed",
-    }
-}
-
 pub(super) fn status_of(row: &Row<'_>, column: usize) -> Result<Status, rusqlite::Error> {
     let name: String = row.get(column)?;
-    let all = [Status::Started, Status::Complete, Status::Withdrawn, Status::ScreenedOut, Status::AttentionFailed];
-    let found = all.into_iter().find(|status| name_of(*status) == name);
+    let found = Status::ALL.into_iter().find(|status| status.name() == name);
     found.ok_or_else(|| unreadable(column, format!("unknown status {name}")))
 }
 

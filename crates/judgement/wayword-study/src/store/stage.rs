@@ -2,7 +2,7 @@
 //! show the same.
 
 use super::{Book, people::Outcome};
-use crate::study::{Item, LONG_MINUTES, Mode, Route, Scene, Status, StudyError};
+use crate::study::{Item, Mode, Route, Scene, Status, StudyError};
 use rusqlite::{OptionalExtension as _, params};
 use wayword_core::{ViewpointId, seed::derive};
 
@@ -27,6 +27,8 @@ pub(crate) enum Stage {
 pub(crate) struct Held {
     pub(super) id: i64,
     pub(super) lease_ms: i64,
+    /// `live`, `answered` or `returned`.
+    pub(super) state: String,
     /// Its name on pages.
     pub(crate) slot: String,
     /// Its number.
@@ -119,7 +121,7 @@ impl Book<'_> {
 
     fn held_where(&self, condition: &str, person: i64, slot: &str) -> Result<Option<Held>, StudyError> {
         let mut find = self.db.prepare_cached(&format!(
-            "SELECT id, lease_ms, name, item, position IS NULL, is_turned, own_text, stopped_ms, looks FROM slot \
+            "SELECT id, lease_ms, name, item, position IS NULL, is_turned, own_text, stopped_ms, looks, state FROM slot \
              WHERE ?2 = ?2 AND {condition}"
         ))?;
         let held = find.query_row(params![person, slot], |row| {
@@ -133,6 +135,7 @@ impl Book<'_> {
                 own_text: row.get(6)?,
                 stopped_ms: row.get(7)?,
                 looks: row.get(8)?,
+                state: row.get(9)?,
                 moves: Vec::new(),
             })
         });
@@ -162,7 +165,7 @@ impl Book<'_> {
     fn has_failed_checks(&self, person: i64) -> Result<bool, StudyError> {
         let count = "SELECT count(*) FROM attention WHERE person = ?1 AND NOT passed";
         let failed: u32 = self.db.query_row(count, [person], |row| row.get(0))?;
-        Ok(failed >= if self.study.settings.minutes >= LONG_MINUTES { 2 } else { 1 })
+        Ok(failed as usize > self.study.settings.most_failed())
     }
 
     /// Whether a participation has ended.

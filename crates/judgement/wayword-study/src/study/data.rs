@@ -43,6 +43,23 @@ pub enum Status {
     AttentionFailed,
 }
 
+impl Status {
+    /// All of them.
+    pub(crate) const ALL: [Self; 5] =
+        [Self::Started, Self::Complete, Self::Withdrawn, Self::ScreenedOut, Self::AttentionFailed];
+
+    /// Its name in files and in the database.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Started => "started",
+            Self::Complete => "complete",
+            Self::Withdrawn => "withdrawn",
+            Self::ScreenedOut => "screened_out",
+            Self::AttentionFailed => "attention_failed",
+        }
+    }
+}
+
 /// Somebody who takes part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Participant {

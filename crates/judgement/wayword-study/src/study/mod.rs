@@ -12,5 +12,4 @@ pub use error::StudyError;
 pub use folder::Study;
 pub use item::{Item, Picture, Place, Route, Scene, Told};
 pub use plan::{Condition, Kind, Mode, Plan};
-pub(crate) use settings::LONG_MINUTES;
 pub use settings::{Codes, Question, Recruiter, Settings};

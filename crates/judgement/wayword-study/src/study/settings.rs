@@ -95,11 +95,16 @@ pub struct Codes {
 }
 
 /// A study of this length or longer needs two failed checks (Prolific's rule), minutes.
-pub(crate) const LONG_MINUTES: u32 = 5;
+const LONG_MINUTES: u32 = 5;
 /// Most answers of a question.
 const MOST_ANSWERS: usize = 10;
 
 impl Settings {
+    /// How many failed attention checks say nothing yet, by Prolific's rule.
+    pub(crate) fn most_failed(&self) -> usize {
+        usize::from(self.minutes >= LONG_MINUTES)
+    }
+
     /// All that is read before the consent.
     pub(crate) fn consent_words(&self) -> Vec<&str> {
         let mut words: Vec<&str> = self.about.iter().map(String::as_str).collect();
