@@ -39,6 +39,8 @@ fn only_labels_and_evidence_look_at_ground_truth() {
         "crates/judgement/wayword-navigation/src/grounders/labels_of.rs",
         // What an agent that reads is told: rooms and labels, as its provenance says.
         "crates/judgement/wayword-navigation/src/sight/sighting.rs",
+        // Changed worlds change what the platform says is there.
+        "crates/judgement/wayword-robustness/src/worlds/",
         "crates/words/wayword-checks/src/evidence/from_labels.rs",
         "crates/words/wayword-synthesis/src/offline/distinguish.rs",
         "crates/words/wayword-synthesis/src/offline/labels.rs",
@@ -80,7 +82,7 @@ fn edges() -> BTreeMap<String, BTreeSet<String>> {
 
 #[test]
 fn no_crate_is_built_on_one_above_it() {
-    let allowed: [(&str, &[&str]); 22] = [
+    let allowed: [(&str, &[&str]); 23] = [
         ("wayword-core", &[]),
         ("wayword-testkit", &["wayword-core"]),
         ("wayword-ledger", &[]),
@@ -100,6 +102,7 @@ fn no_crate_is_built_on_one_above_it() {
         ("wayword-follower", &["wayword-core", "wayword-language"]),
         ("wayword-synthesis", &["wayword-checks", "wayword-core", "wayword-language"]),
         ("wayword-metrics", &["wayword-core"]),
+        ("wayword-robustness", &["wayword-checks", "wayword-core", "wayword-language", "wayword-metrics"]),
         ("wayword-study", &["wayword-core", "wayword-metrics"]),
         ("wayword-navigation", &["wayword-core", "wayword-follower", "wayword-language", "wayword-metrics"]),
         (

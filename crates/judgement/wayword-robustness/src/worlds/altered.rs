@@ -1,0 +1,207 @@
+//! A platform whose world is another one, altered.
+
+use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
+use wayword_core::{
+    DVec3, Depth, Frame, FromAbove, Gaze, Heading, Island, ObjectId, Path, PathRequest, Placed, Platform,
+    PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId, Way, graph::GraphError,
+};
+
+/// What is done to a world. Everything that it does not name stays as it is.
+///
+/// "Before" is the world as the platform has it, "after" the altered one.
+pub trait Alter: Send + Sync {
+    /// Where a place lies after the change, metres, world frame.
+    fn place_after(&self, before: DVec3) -> DVec3 {
+        before
+    }
+
+    /// Where a place lay before the change: the inverse of [`place_after`](Self::place_after).
+    fn place_before(&self, after: DVec3) -> DVec3 {
+        after
+    }
+
+    /// A direction after the change.
+    fn heading_after(&self, before: Heading) -> Heading {
+        before
+    }
+
+    /// The inverse of [`heading_after`](Self::heading_after).
+    fn heading_before(&self, after: Heading) -> Heading {
+        after
+    }
+
+    /// Where the eye stands before the change, and where it looks from there, for somebody who looks after it.
+    fn look_before(&self, _scene: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
+        let gaze = Gaze { heading: self.heading_before(gaze.heading), ..gaze };
+        (self.frame_before(from), gaze)
+    }
+
+    /// What is seen after the change, made of what was seen before it.
+    ///
+    /// # Errors
+    /// When such a view cannot be made.
+    fn view_after(&self, _look: Look<'_>, before: View) -> Result<View, PlatformError> {
+        Ok(before)
+    }
+
+    /// How far away is what the view shows; `None` where the change leaves that open.
+    fn depth_after(&self, before: Depth) -> Option<Depth> {
+        Some(before)
+    }
+
+    /// A frame before the change.
+    fn frame_before(&self, after: &Frame) -> Frame {
+        let Pose { position, heading, elevation_rad } = after.pose;
+        let pose = Pose { position: self.place_before(position), heading: self.heading_before(heading), elevation_rad };
+        Frame { pose, ..after.clone() }
+    }
+
+    /// A path after the change. How its target is told from other things is left open, because that may change.
+    fn path_after(&self, before: Path) -> Path {
+        let frame = |frame: Frame| {
+            let Pose { position, heading, elevation_rad } = frame.pose;
+            let pose =
+                Pose { position: self.place_after(position), heading: self.heading_after(heading), elevation_rad };
+            Frame { pose, ..frame }
+        };
+        let mut path = Path { frames: before.frames.into_iter().map(frame).collect(), ..before };
+        if let Some(target) = &mut path.target {
+            target.told_by.clear();
+            target.descriptions.clear();
+        }
+        path
+    }
+}
+
+/// Who looks, and where, after the change.
+#[derive(Debug, Clone, Copy)]
+pub struct Look<'a> {
+    /// The scene.
+    pub scene: &'a SceneId,
+    /// Where the eye stands.
+    pub from: &'a Frame,
+    /// Where it looks.
+    pub gaze: Gaze,
+}
+
+/// A platform with an altered world.
+#[derive(Debug, Clone)]
+pub struct Altered<P, A> {
+    platform: P,
+    alter: A,
+}
+
+impl<P: Platform, A: Alter> Altered<P, A> {
+    /// A platform's world, altered.
+    pub fn new(platform: P, alter: A) -> Self {
+        Self { platform, alter }
+    }
+
+    fn seen(
+        &self,
+        scene: &SceneId,
+        from: &Frame,
+        gaze: Gaze,
+        look: impl Fn(&Frame, Gaze) -> Result<View, PlatformError>,
+    ) -> Result<View, PlatformError> {
+        let (before, gaze_before) = self.alter.look_before(scene, from, gaze);
+        self.alter.view_after(Look { scene, from, gaze }, look(&before, gaze_before)?)
+    }
+}
+
+impl<P: Platform, A: Alter> Platform for Altered<P, A> {
+    fn name(&self) -> &'static str {
+        self.platform.name()
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.scenes()
+    }
+
+    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+        self.platform.check(scenes)
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        let before = self.platform.graph(scene)?;
+        let graph = graph_after(&before, &self.alter);
+        graph.map(Arc::new).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        Ok(self.alter.path_after(self.platform.sample_path(scene, request, seed)?))
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.seen(scene, from, gaze, |from, gaze| self.platform.look(scene, from, gaze))
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.seen(scene, from, gaze, |from, gaze| self.platform.look_without_picture(scene, from, gaze))
+    }
+
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        let (from, gaze) = self.alter.look_before(scene, from, gaze);
+        let before = self.platform.depth(scene, &from, gaze)?;
+        Ok(before.and_then(|before| self.alter.depth_after(before)))
+    }
+
+    /// An altered world has no picture from above.
+    fn look_down(&self, _scene: &SceneId, _level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        Ok(None)
+    }
+
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        self.platform.object_name(scene, &self.alter.frame_before(near), object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.visible_from(scene, object)
+    }
+
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        let before = self.platform.way(scene, &self.alter.frame_before(from), &self.alter.frame_before(to))?;
+        let after = |way: Way| Way {
+            corners: way.corners.into_iter().map(|corner| self.alter.place_after(corner)).collect(),
+            ..way
+        };
+        Ok(before.map(after))
+    }
+
+    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        self.platform.islands(scene)
+    }
+
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        let after = |placed: Placed| Placed { position: self.alter.place_after(placed.position), ..placed };
+        Ok(self.platform.listed_objects(scene)?.into_iter().map(after).collect())
+    }
+
+    fn lists_everything(&self) -> bool {
+        self.platform.lists_everything()
+    }
+
+    /// No file holds an altered world.
+    fn scene_file(&self, _scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        Ok(None)
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.platform.files(scene)
+    }
+}
+
+fn graph_after(before: &ViewpointGraph, alter: &impl Alter) -> Result<ViewpointGraph, GraphError> {
+    let mut after = ViewpointGraph::default();
+    for id in before.viewpoints() {
+        let Some(position) = before.position(id) else { continue };
+        after.add(id.clone(), alter.place_after(position), before.level(id))?;
+        if let Some(floor_m) = before.floor_m(id) {
+            after.set_floor(id, floor_m)?;
+        }
+    }
+    for (a, b, _) in before.edges() {
+        after.join(a, b)?;
+    }
+    Ok(after)
+}

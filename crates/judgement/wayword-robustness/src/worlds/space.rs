@@ -1,0 +1,101 @@
+//! A world that is mirrored, and one that is turned.
+
+use super::{Alter, altered::Look};
+use std::{f64::consts::FRAC_PI_2, sync::Arc};
+use wayword_core::{DVec3, Depth, GroundTruth, Heading, Image, Label, PlatformError, Pose, View};
+
+/// The world mirrored at the plane x = 0: left becomes right, and nothing else changes.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Mirror;
+
+/// The world turned by 90 degrees clockwise, seen from above, around the origin.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct QuarterTurn;
+
+impl Alter for Mirror {
+    fn place_after(&self, before: DVec3) -> DVec3 {
+        before.with_x(-before.x)
+    }
+
+    fn place_before(&self, after: DVec3) -> DVec3 {
+        after.with_x(-after.x)
+    }
+
+    fn heading_after(&self, before: Heading) -> Heading {
+        Heading::NORTH.turned(-before.rad())
+    }
+
+    fn heading_before(&self, after: Heading) -> Heading {
+        self.heading_after(after)
+    }
+
+    fn view_after(&self, _: Look<'_>, before: View) -> Result<View, PlatformError> {
+        let width_px = before.image.as_ref().map(|image| f64::from(image.width_px()));
+        let label = |mut label: Label| {
+            // Without a picture nobody knows how wide it is, so the box has no place.
+            label.box_px =
+                label.box_px.zip(width_px).map(|([x, y, width, height], all)| [all - x - width, y, width, height]);
+            label
+        };
+        let mut after = moved(self, before, label);
+        after.image = after.image.as_deref().map(mirrored).map(Arc::new);
+        Ok(after)
+    }
+
+    fn depth_after(&self, _: Depth) -> Option<Depth> {
+        None
+    }
+}
+
+impl Alter for QuarterTurn {
+    fn place_after(&self, before: DVec3) -> DVec3 {
+        DVec3::new(before.y, -before.x, before.z)
+    }
+
+    fn place_before(&self, after: DVec3) -> DVec3 {
+        DVec3::new(-after.y, after.x, after.z)
+    }
+
+    fn heading_after(&self, before: Heading) -> Heading {
+        before.turned(FRAC_PI_2)
+    }
+
+    fn heading_before(&self, after: Heading) -> Heading {
+        after.turned(-FRAC_PI_2)
+    }
+
+    fn view_after(&self, _: Look<'_>, before: View) -> Result<View, PlatformError> {
+        Ok(moved(self, before, |label| label))
+    }
+}
+
+/// A view whose pose and labels are carried into the space after a change.
+fn moved(space: &impl Alter, before: View, label: impl Fn(Label) -> Label) -> View {
+    let truth = before.ground_truth().cloned().map(|truth| GroundTruth {
+        labels: truth.labels.into_iter().map(|before| label(label_after(space, before))).collect(),
+        ..truth
+    });
+    let pose = Pose {
+        position: space.place_after(before.pose.position),
+        heading: space.heading_after(before.pose.heading),
+        ..before.pose
+    };
+    View::new(pose, before.horizontal_fov_rad, before.image, truth)
+}
+
+fn label_after(space: &impl Alter, before: Label) -> Label {
+    Label {
+        heading: space.heading_after(before.heading),
+        position: before.position.map(|position| space.place_after(position)),
+        ..before
+    }
+}
+
+/// A picture with its columns in reverse order.
+fn mirrored(image: &Image) -> Image {
+    let mut rgb = Vec::with_capacity(image.rgb().len());
+    for row in image.rgb().chunks_exact(image.width_px() as usize * 3) {
+        rgb.extend(row.chunks_exact(3).rev().flatten());
+    }
+    Image::new(image.width_px(), image.height_px(), rgb).unwrap_or_else(|_| image.clone())
+}
