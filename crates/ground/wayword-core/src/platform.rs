@@ -142,75 +142,92 @@ pub trait Platform: Send + Sync {
     }
 }
 
-impl<P: Platform + ?Sized> Platform for Box<P> {
-    fn name(&self) -> &'static str {
-        (**self).name()
-    }
+/// Makes a pointer to a platform a platform.
+macro_rules! platform_behind {
+    ($pointer:ty) => {
+        impl<P: Platform + ?Sized> Platform for $pointer {
+            fn name(&self) -> &'static str {
+                (**self).name()
+            }
 
-    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        (**self).scenes()
-    }
+            fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+                (**self).scenes()
+            }
 
-    fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
-        (**self).check(scenes)
-    }
+            fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
+                (**self).check(scenes)
+            }
 
-    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
-        (**self).graph(scene)
-    }
+            fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+                (**self).graph(scene)
+            }
 
-    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
-        (**self).sample_path(scene, request, seed)
-    }
+            fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+                (**self).sample_path(scene, request, seed)
+            }
 
-    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        (**self).look(scene, from, gaze)
-    }
+            fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+                (**self).look(scene, from, gaze)
+            }
 
-    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        (**self).look_without_picture(scene, from, gaze)
-    }
+            fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+                (**self).look_without_picture(scene, from, gaze)
+            }
 
-    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
-        (**self).depth(scene, from, gaze)
-    }
+            fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+                (**self).depth(scene, from, gaze)
+            }
 
-    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
-        (**self).look_down(scene, level)
-    }
+            fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+                (**self).look_down(scene, level)
+            }
 
-    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
-        (**self).object_name(scene, near, object)
-    }
+            fn object_name(
+                &self,
+                scene: &SceneId,
+                near: &Frame,
+                object: &ObjectId,
+            ) -> Result<Option<String>, PlatformError> {
+                (**self).object_name(scene, near, object)
+            }
 
-    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
-        (**self).visible_from(scene, object)
-    }
+            fn visible_from(
+                &self,
+                scene: &SceneId,
+                object: &ObjectId,
+            ) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+                (**self).visible_from(scene, object)
+            }
 
-    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-        (**self).way(scene, from, to)
-    }
+            fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+                (**self).way(scene, from, to)
+            }
 
-    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
-        (**self).islands(scene)
-    }
+            fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+                (**self).islands(scene)
+            }
 
-    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
-        (**self).listed_objects(scene)
-    }
+            fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+                (**self).listed_objects(scene)
+            }
 
-    fn lists_everything(&self) -> bool {
-        (**self).lists_everything()
-    }
+            fn lists_everything(&self) -> bool {
+                (**self).lists_everything()
+            }
 
-    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
-        (**self).scene_file(scene)
-    }
+            fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+                (**self).scene_file(scene)
+            }
 
-    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        (**self).files(scene)
-    }
+            fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+                (**self).files(scene)
+            }
+        }
+    };
 }
+
+platform_behind!(Box<P>);
+platform_behind!(&P);
 
 /// What a random path has to be like.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
