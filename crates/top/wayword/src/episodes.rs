@@ -46,7 +46,10 @@ pub fn path_name(scene: &SceneId, path_id: &str) -> String {
 }
 
 /// The viewpoints nearest to the frames of a path, without repeats in a row.
-fn nearest_along(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Vec<ViewpointId>, Error> {
+///
+/// # Errors
+/// When its scene is unknown.
+pub(crate) fn nearest_along(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Vec<ViewpointId>, Error> {
     let graph = platform.graph(&path.scene)?;
     let mut viewpoints: Vec<ViewpointId> =
         path.frames.iter().filter_map(|frame| nearest(&graph, frame.pose.position)).collect();

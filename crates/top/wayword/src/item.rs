@@ -11,6 +11,8 @@ use wayword_world::path_of;
 pub enum Item {
     /// An episode of a dataset.
     Episode(Box<Episode>),
+    /// A path that is known already.
+    Walk(Box<Path>),
     /// A random path.
     Random {
         /// Its name.
@@ -127,6 +129,7 @@ impl Item {
     pub fn id(&self) -> String {
         match self {
             Self::Episode(episode) => episode.id.clone(),
+            Self::Walk(path) => path.id.clone(),
             Self::Random { id, .. } => id.clone(),
         }
     }
@@ -135,6 +138,7 @@ impl Item {
     fn scene(&self) -> &SceneId {
         match self {
             Self::Episode(episode) => &episode.scene,
+            Self::Walk(path) => &path.scene,
             Self::Random { scenes, first, .. } => &scenes[*first],
         }
     }
@@ -153,6 +157,7 @@ impl Item {
                 episode.start_heading,
                 episode.target_object.as_ref(),
             ),
+            Self::Walk(path) => Ok((**path).clone()),
             Self::Random { id, scenes, first: start, seed } => {
                 let sample = |scene: &SceneId| platform.sample_path(scene, &settings.request, *seed);
                 let mut sampled = (0..scenes.len()).map(|off| sample(&scenes[(start + off) % scenes.len()]));
@@ -172,7 +177,7 @@ impl Item {
     pub fn originals(&self) -> &[String] {
         match self {
             Self::Episode(episode) => &episode.instructions,
-            Self::Random { .. } => &[],
+            Self::Walk(_) | Self::Random { .. } => &[],
         }
     }
 
@@ -181,6 +186,7 @@ impl Item {
     pub fn path_id(&self) -> String {
         match self {
             Self::Episode(episode) => episode.path_id.clone(),
+            Self::Walk(path) => path.id.clone(),
             Self::Random { id, .. } => id.clone(),
         }
     }

@@ -46,12 +46,21 @@ pub struct RunPlatform<'a> {
     pub scenes: &'a KnownScenes,
 }
 
-/// Makes an item's instructions. Its views are talked about on as many threads as `threads` says, and so are its styles
-/// written; the results do not depend on that.
+/// The texts of an item, before anything is kept of them.
+#[derive(Debug)]
+pub struct Written {
+    /// The path and what was seen along it.
+    pub walk: Walk,
+    /// As many per style as each path gets, in the order of the run's styles.
+    pub outcomes: Vec<Outcome>,
+    /// The view ahead of each frame.
+    ahead: Vec<View>,
+}
+
+/// Makes an item: its texts, and the pictures along its path. See [`write`].
 ///
 /// # Errors
-/// When its path does not fit its scene, the files of the scene have changed since the run began, a view cannot be had, or a model
-/// gives no answer.
+/// As for [`write`].
 pub fn make(
     item: &Item,
     settings: &Settings,
@@ -60,6 +69,24 @@ pub fn make(
     styles: &[Measured],
     threads: usize,
 ) -> Result<Made, Error> {
+    let Written { walk, outcomes, ahead } = write(item, settings, world, team, styles, threads)?;
+    Ok(Made { walk, outcomes, pictures: pictures::encode(&ahead)? })
+}
+
+/// Writes an item's instructions. Its views are talked about on as many threads as `threads` says, and so are its styles
+/// written; the results do not depend on that.
+///
+/// # Errors
+/// When its path does not fit its scene, the files of the scene have changed since the run began, a view cannot be had, or a model
+/// gives no answer.
+pub fn write(
+    item: &Item,
+    settings: &Settings,
+    world: RunPlatform<'_>,
+    team: &Team,
+    styles: &[Measured],
+    threads: usize,
+) -> Result<Written, Error> {
     let RunPlatform { platform, data, scenes } = world;
     let world = Remembering::new(platform);
     let mut path = path(item, settings, &world)?;
@@ -98,7 +125,7 @@ pub fn make(
     let follower = Follower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
     let ahead = ahead(&world, &walk.path)?;
     let shown = if settings.roles.write_sees { shown(&ahead, &settings.roles.write)? } else { Vec::new() };
-    let write = |Measured { style, profile, hash }: &Measured| {
+    let of_style = |Measured { style, profile, hash }: &Measured| {
         let order = Order {
             walk: &walk,
             memory: &memory,
@@ -116,10 +143,8 @@ pub fn make(
         texts(team, order, settings.per_path)
     };
     let ends = |texts: &Result<Vec<Outcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
-    let outcomes = at_once(styles, threads, write, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
-    let outcomes = outcomes.into_iter().flatten().collect();
-    let pictures = pictures::encode(&ahead)?;
-    Ok(Made { walk, outcomes, pictures })
+    let outcomes = at_once(styles, threads, of_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(Written { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
 }
 
 /// The texts of one walk in one style. Each has to differ from those before it.

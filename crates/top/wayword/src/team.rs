@@ -10,7 +10,7 @@ use crate::{
 };
 use std::{fs, path::Path, sync::Arc};
 use wayword_checks::open::Calibration;
-use wayword_core::{Answerer, LanguageModel, Platform};
+use wayword_core::{Answerer, LanguageModel, ModelError, Platform, Reply, Request};
 use wayword_synthesis::{
     dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
     models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
@@ -41,13 +41,26 @@ impl Team {
     /// # Errors
     /// When a model cannot be reached by its name, a prompt cannot be used, or a calibration has no effect.
     pub fn new(settings: &Settings, calls: Option<&Calls>, platform: &dyn Platform) -> Result<Self, Error> {
+        Self::of_sample(settings, calls, platform, 0)
+    }
+
+    /// The same, where each model is asked for another sample of all that it says: 0 is the first.
+    ///
+    /// # Errors
+    /// As for [`Self::new`].
+    pub fn of_sample(
+        settings: &Settings,
+        calls: Option<&Calls>,
+        platform: &dyn Platform,
+        sample: u32,
+    ) -> Result<Self, Error> {
         let labels =
             Labels { list_everything: platform.lists_everything(), calibration: calibration(settings, platform)? };
         let prompts = Arc::new(prompts(settings)?);
         let roles = &settings.roles;
         let model = |name: &str| -> Result<Option<Arc<dyn LanguageModel>>, Error> {
             match calls.filter(|_| is_model(name)) {
-                Some(calls) => Ok(Some(calls.model(name)?)),
+                Some(calls) => Ok(Some(sampled(calls.model(name)?, sample))),
                 None => Ok(None),
             }
         };
@@ -125,6 +138,32 @@ impl Team {
     pub fn writers(&self) -> Writers<'_> {
         let finisher = self.finisher.as_ref().map(|finisher| finisher as &dyn Writer);
         Writers { writer: self.writer.as_ref(), finisher }
+    }
+}
+
+/// Numbers of requests that belong to one sample of a model: more than anybody asks for again within a run.
+const REPLICATES: u32 = 1 << 20;
+
+/// A model that is asked for another sample of all that it says.
+struct Sampled {
+    model: Arc<dyn LanguageModel>,
+    sample: u32,
+}
+
+/// A model's sample of that number; the first is the model itself.
+fn sampled(model: Arc<dyn LanguageModel>, sample: u32) -> Arc<dyn LanguageModel> {
+    if sample == 0 { model } else { Arc::new(Sampled { model, sample }) }
+}
+
+impl LanguageModel for Sampled {
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
+        let again =
+            |request: &Request| Request { replicate: request.replicate + self.sample * REPLICATES, ..request.clone() };
+        self.model.complete(&requests.iter().map(again).collect::<Vec<_>>())
     }
 }
 

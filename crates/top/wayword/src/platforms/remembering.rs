@@ -1,4 +1,4 @@
-//! A platform that remembers its views, so that each is made once per path.
+//! A platform that remembers its views, so that each is made once.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -14,23 +14,51 @@ use wayword_core::{
 pub struct Remembering<'a> {
     platform: &'a dyn Platform,
     views: Mutex<BTreeMap<Key, View>>,
+    /// Whether its views have pictures.
+    has_pictures: bool,
 }
 
-/// Place, heading and width, as bits: equal looks give equal views.
-type Key = (([u64; 3], Option<ViewpointId>), u64, u64);
+/// Scene, place, heading and width, as bits: equal looks give equal views.
+type Key = (SceneId, ([u64; 3], Option<ViewpointId>), u64, u64);
 
 impl<'a> Remembering<'a> {
     /// Nothing remembered yet.
     #[must_use]
     pub fn new(platform: &'a dyn Platform) -> Self {
-        Self { platform, views: Mutex::default() }
+        Self { platform, views: Mutex::default(), has_pictures: true }
+    }
+
+    /// The same without pictures, for those who read labels alone: so little is remembered of a view that all views of a run
+    /// fit into memory.
+    #[must_use]
+    pub fn labels_of(platform: &'a dyn Platform) -> Self {
+        Self { has_pictures: false, ..Self::new(platform) }
+    }
+
+    fn remembered(&self, key: &Key) -> Option<View> {
+        self.views.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    }
+
+    fn remember(&self, key: Key, view: &View) {
+        self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+    }
+
+    fn labels(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let key = key(scene, from, gaze);
+        if let Some(view) = self.remembered(&key) {
+            return Ok(view);
+        }
+        let mut view = self.platform.look_without_picture(scene, from, gaze)?;
+        view.image = None;
+        self.remember(key, &view);
+        Ok(view)
     }
 }
 
-fn key(from: &Frame, gaze: Gaze) -> Key {
+fn key(scene: &SceneId, from: &Frame, gaze: Gaze) -> Key {
     // Headings that differ only by rounding look at the same thing.
     let micro_rad = |rad: f64| (rad * 1e6).round() as u64;
-    (from.place(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
+    (scene.clone(), from.place(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
 }
 
 impl Platform for Remembering<'_> {
@@ -51,24 +79,30 @@ impl Platform for Remembering<'_> {
     }
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let key = key(from, gaze);
-        if let Some(view) = self.views.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
-            return Ok(view.clone());
+        if !self.has_pictures {
+            return self.labels(scene, from, gaze);
+        }
+        let key = key(scene, from, gaze);
+        if let Some(view) = self.remembered(&key) {
+            return Ok(view);
         }
         let view = self.platform.look(scene, from, gaze)?;
-        self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+        self.remember(key, &view);
         Ok(view)
     }
 
     fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let key = key(from, gaze);
-        if let Some(view) = self.views.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
-            return Ok(view.clone());
+        if !self.has_pictures {
+            return self.labels(scene, from, gaze);
+        }
+        let key = key(scene, from, gaze);
+        if let Some(view) = self.remembered(&key) {
+            return Ok(view);
         }
         let view = self.platform.look_without_picture(scene, from, gaze)?;
         // A view with its picture is complete.
         if view.image.is_some() {
-            self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+            self.remember(key, &view);
         }
         Ok(view)
     }
