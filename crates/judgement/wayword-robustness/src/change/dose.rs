@@ -1,0 +1,142 @@
+//! Changes with a dose: their names, units and ranges.
+
+/// What a dose is of. Its unit is in its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Dose {
+    /// Height of the eye over the floor, metres.
+    CameraHeight,
+    /// Horizontal field of view, degrees.
+    FieldOfView,
+    /// How far the camera looks up, degrees; negative is down.
+    Pitch,
+    /// How far the camera is turned clockwise around the direction in which it looks, degrees.
+    Roll,
+    /// Exposure, stops: each doubles the light.
+    Exposure,
+    /// Colour temperature of the light, kelvin, for a camera that is set to 6500 K.
+    ColourTemperature,
+    /// Standard deviation of a gaussian blur, pixels.
+    Blur,
+    /// Standard deviation of a gaussian noise, per cent of full scale.
+    Noise,
+    /// Quality of the JPEG file that a picture went through, per cent.
+    JpegQuality,
+    /// Share of the frames between the first and the last that are lost, per cent.
+    DroppedFrames,
+    /// Distance between two frames along the path, metres.
+    FrameSpacing,
+    /// Standard deviation of the error of the headings in the log, degrees.
+    HeadingNoise,
+    /// Turn of the heading at the start, degrees, positive right.
+    StartHeading,
+}
+
+/// What is fixed about a dose.
+struct Row {
+    name: &'static str,
+    unit: &'static str,
+    unchanged: Option<f64>,
+    range: (f64, f64),
+    example: &'static str,
+}
+
+impl Dose {
+    /// All of them.
+    pub const ALL: [Self; 13] = [
+        Self::CameraHeight,
+        Self::FieldOfView,
+        Self::Pitch,
+        Self::Roll,
+        Self::Exposure,
+        Self::ColourTemperature,
+        Self::Blur,
+        Self::Noise,
+        Self::JpegQuality,
+        Self::DroppedFrames,
+        Self::FrameSpacing,
+        Self::HeadingNoise,
+        Self::StartHeading,
+    ];
+
+    /// The table of all doses.
+    fn row(self) -> Row {
+        let row = |name, unit, unchanged, range, example| Row { name, unit, unchanged, range, example };
+        match self {
+            Self::CameraHeight => row("camera_height_m", "m", Some(1.5), (0.1, 2.4), "0.3,0.88,1.6"),
+            Self::FieldOfView => row("field_of_view_deg", "degrees", Some(90.0), (20.0, 140.0), "60,90,120"),
+            Self::Pitch => row("pitch_deg", "degrees", Some(0.0), (-30.0, 30.0), "-20,-10,10"),
+            Self::Roll => row("roll_deg", "degrees", Some(0.0), (-45.0, 45.0), "5,15"),
+            Self::Exposure => row("exposure_stops", "stops", Some(0.0), (-6.0, 6.0), "-2,-1,1"),
+            Self::ColourTemperature => {
+                row("colour_temperature_k", "K", Some(6500.0), (2000.0, 20_000.0), "2700,4000,9000")
+            }
+            Self::Blur => row("blur_px", "px", Some(0.0), (0.0, 40.0), "1,2,4"),
+            Self::Noise => row("noise_percent", "%", Some(0.0), (0.0, 50.0), "2,5,10"),
+            Self::JpegQuality => row("jpeg_quality_percent", "%", Some(100.0), (1.0, 100.0), "80,40,10"),
+            Self::DroppedFrames => row("dropped_frames_percent", "%", Some(0.0), (0.0, 100.0), "10,30,50"),
+            Self::FrameSpacing => row("frame_spacing_m", "m", None, (0.1, 10.0), "0.5,1,3"),
+            Self::HeadingNoise => row("heading_noise_deg", "degrees", Some(0.0), (0.0, 180.0), "5,15,45"),
+            Self::StartHeading => row("start_heading_deg", "degrees", Some(0.0), (-180.0, 180.0), "45,90,180"),
+        }
+    }
+
+    /// Its name, with the unit: "`camera_height_m`".
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Its unit, as it is written behind a number: "m", "degrees", "%".
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        self.row().unit
+    }
+
+    /// The value at which nothing changes; `None` where a path has a value of its own, as with the distance between frames.
+    #[must_use]
+    pub fn unchanged(self) -> Option<f64> {
+        self.row().unchanged
+    }
+
+    /// The least and the greatest value.
+    #[must_use]
+    pub fn range(self) -> (f64, f64) {
+        self.row().range
+    }
+
+    /// Values that make sense, as they are written: "0.3,0.88,1.6".
+    #[must_use]
+    pub fn example(self) -> &'static str {
+        self.row().example
+    }
+
+    /// Whether only whole numbers are values of it.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        self == Self::JpegQuality
+    }
+
+    /// What a value of it does, in one sentence.
+    #[must_use]
+    pub fn description(self, value: f64) -> String {
+        match self {
+            Self::CameraHeight => format!("The eye is {value} m above the floor."),
+            Self::FieldOfView => format!("Each view is {value} degrees wide."),
+            Self::Pitch if value < 0.0 => format!("The camera looks {} degrees down.", -value),
+            Self::Pitch => format!("The camera looks {value} degrees up."),
+            Self::Roll if value < 0.0 => format!("The camera is rolled {} degrees counter-clockwise.", -value),
+            Self::Roll => format!("The camera is rolled {value} degrees clockwise."),
+            Self::Exposure => format!("Pictures are exposed {value:+} stops."),
+            Self::ColourTemperature => format!("The light has {value} K, for a camera that is set to 6500 K."),
+            Self::Blur => format!("Pictures are blurred by a gaussian of {value} px."),
+            Self::Noise => format!("Pictures have gaussian noise of {value} % of full scale."),
+            Self::JpegQuality => format!("Pictures went through JPEG files of quality {value} %."),
+            Self::DroppedFrames => format!("{value} % of the frames between the first and the last are lost."),
+            Self::FrameSpacing => format!("The frames of a path are at most {value} m apart."),
+            Self::HeadingNoise => {
+                format!("The headings in the log are off by a gaussian error of {value} degrees.")
+            }
+            Self::StartHeading => format!("The walk begins {value} degrees to the right of its heading."),
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! What is changed: one change, with its dose where it has one.
+
+mod dose;
+mod parse;
+mod refusal;
+mod whole;
+
+pub use dose::Dose;
+pub use parse::ChangeError;
+pub use refusal::{Sees, Setting};
+pub use whole::Whole;
+
+use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
+use wayword_core::seed::derive;
+
+/// The name of the change to another platform.
+const PLATFORM: &str = "platform";
+
+/// One change of a world, its pictures or its paths. As text it is what [`Change::parse`] reads, with one dose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Change {
+    /// The same poses on another platform: NAME[:DATA][@ADDRESS], as it was written.
+    Platform(String),
+    /// A change that is made or not.
+    Whole(Whole),
+    /// A change of so much, in the dose's own unit. The number lies in the dose's range where the change was parsed.
+    By(Dose, f64),
+}
+
+impl Change {
+    /// The names of all changes, in the order in which they are explained.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        let whole = Whole::ALL.into_iter().map(Whole::name);
+        [PLATFORM].into_iter().chain(whole).chain(Dose::ALL.into_iter().map(Dose::name))
+    }
+
+    /// The changes that are made where nobody says which: mirror, turn, remove, three heights of the camera, three fields
+    /// of view, three distances between frames, and three heading noises.
+    #[must_use]
+    pub fn default_set() -> Vec<Self> {
+        let doses = [
+            (Dose::CameraHeight, [0.3, 0.88, 1.6]),
+            (Dose::FieldOfView, [60.0, 90.0, 120.0]),
+            (Dose::FrameSpacing, [0.5, 1.0, 3.0]),
+            (Dose::HeadingNoise, [5.0, 15.0, 45.0]),
+        ];
+        let whole = [Whole::Mirror, Whole::Turn, Whole::Remove].map(Self::Whole);
+        let by = doses.into_iter().flat_map(|(dose, values)| values.map(|value| Self::By(dose, value)));
+        whole.into_iter().chain(by).collect()
+    }
+
+    /// Its name, without its dose: "`camera_height_m`".
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Platform(_) => PLATFORM,
+            Self::Whole(whole) => whole.name(),
+            Self::By(dose, _) => dose.name(),
+        }
+    }
+
+    /// Its dose, in [`unit`](Self::unit).
+    #[must_use]
+    pub fn dose(&self) -> Option<f64> {
+        match self {
+            Self::By(_, value) => Some(*value),
+            Self::Platform(_) | Self::Whole(_) => None,
+        }
+    }
+
+    /// The unit of its dose: "m", "degrees", "%".
+    #[must_use]
+    pub fn unit(&self) -> Option<&'static str> {
+        self.kind().map(Dose::unit)
+    }
+
+    /// The dose at which nothing changes; `None` for a change without a dose, and where no dose leaves every path as it is.
+    #[must_use]
+    pub fn unchanged(&self) -> Option<f64> {
+        self.kind().and_then(Dose::unchanged)
+    }
+
+    /// How far the dose is from [`unchanged`](Self::unchanged), as a share of the way to the end of its range on the same
+    /// side: 0 to 1.
+    #[must_use]
+    pub fn strength(&self) -> Option<f64> {
+        let Self::By(dose, value) = self else { return None };
+        let (unchanged, (low, high)) = (dose.unchanged()?, dose.range());
+        let end = if *value < unchanged { low } else { high };
+        let way = (end - unchanged).abs();
+        Some(if way > 0.0 { ((value - unchanged) / way).abs().min(1.0) } else { 0.0 })
+    }
+
+    /// A name for its files and folders, unique among changes: "camera-height-m-0.3".
+    #[must_use]
+    pub fn id(&self) -> String {
+        let name = self.name().replace('_', "-");
+        match self {
+            Self::Whole(_) => name,
+            Self::By(_, value) if *value < 0.0 => format!("{name}-minus-{}", -value),
+            Self::By(_, value) => format!("{name}-{value}"),
+            Self::Platform(spec) if spec.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit()) => {
+                format!("{name}-{spec}")
+            }
+            // A path or an address is no name of a file, so its hash stands for it.
+            Self::Platform(spec) => {
+                let platform = spec.split([':', '@']).next().unwrap_or_default();
+                let safe: String = platform.chars().filter(char::is_ascii_alphanumeric).collect();
+                format!("{name}-{safe}-{:016x}", derive(0, &[spec]))
+            }
+        }
+    }
+
+    /// What it does, in one sentence.
+    #[must_use]
+    pub fn description(&self) -> String {
+        match self {
+            Self::Platform(spec) => format!("The same poses are seen on {spec}."),
+            Self::Whole(whole) => whole.description().to_owned(),
+            Self::By(dose, value) => dose.description(*value),
+        }
+    }
+
+    fn kind(&self) -> Option<Dose> {
+        match self {
+            Self::By(dose, _) => Some(*dose),
+            Self::Platform(_) | Self::Whole(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Platform(spec) => write!(f, "{PLATFORM}={spec}"),
+            Self::Whole(whole) => f.write_str(whole.name()),
+            Self::By(dose, value) => write!(f, "{}={value}", dose.name()),
+        }
+    }
+}
+
+impl FromStr for Change {
+    type Err = ChangeError;
+
+    fn from_str(text: &str) -> Result<Self, ChangeError> {
+        match <[Self; 1]>::try_from(Self::parse(text)?) {
+            Ok([change]) => Ok(change),
+            Err(several) => Err(ChangeError::Several { text: text.to_owned(), count: several.len() }),
+        }
+    }
+}
+
+impl TryFrom<String> for Change {
+    type Error = ChangeError;
+
+    fn try_from(text: String) -> Result<Self, ChangeError> {
+        text.parse()
+    }
+}
+
+impl From<Change> for String {
+    fn from(change: Change) -> Self {
+        change.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,110 @@
+//! Changes that would mean nothing where they were asked for.
+
+use super::{Change, Dose, Whole};
+
+/// How far apart viewpoints of Matterport3D are on average, metres (Chang et al., "Matterport3D", 2017).
+const BETWEEN_VIEWPOINTS_M: f64 = 2.25;
+/// How far apart the frames are that are chosen from a recording, metres.
+const BETWEEN_FRAMES_M: f64 = 1.0;
+
+/// Who sees: where the words for what is seen come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sees {
+    /// The platform's labels.
+    Labels,
+    /// A scripted eye, whose recall is a stated function of the dose.
+    Eye,
+    /// A model, which gets the pictures.
+    Pictures,
+}
+
+/// Where a change is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Setting<'a> {
+    /// The platform's name.
+    pub platform: &'a str,
+    /// Who sees.
+    pub sees: Sees,
+    /// Whether the frames of its paths have poses.
+    pub has_poses: bool,
+    /// Whether it draws what is seen from any pose, and does not just have pictures that were taken before.
+    pub draws: bool,
+    /// Whether its views come from the viewpoints of a graph alone, and all around from each.
+    pub graph: bool,
+}
+
+impl Change {
+    /// Why the change means nothing there, in one sentence; `None` where it means something.
+    #[must_use]
+    pub fn refusal(&self, there: &Setting<'_>) -> Option<String> {
+        let why = match self {
+            Self::Platform(_) => (!there.has_poses)
+                .then(|| "the frames have no poses, so nobody knows where they are on another platform".to_owned()),
+            Self::Whole(whole) => whole.refusal(there),
+            Self::By(dose, value) => dose.refusal(*value, there),
+        };
+        why.map(|why| format!("{self} means nothing here: {why}"))
+    }
+}
+
+impl Whole {
+    fn refusal(self, there: &Setting<'_>) -> Option<String> {
+        match self {
+            Self::Mirror | Self::Turn | Self::Reverse if !there.has_poses => Some(no_poses("directions", there)),
+            Self::Reverse if there.is_recorded() => {
+                Some(format!("platform {} has no pictures of the way back", there.platform))
+            }
+            Self::Remove | Self::Add | Self::Material if there.sees == Sees::Pictures => Some(
+                "it changes what is listed and not the pictures, which are what the model sees; use labels or the scripted eye"
+                    .to_owned(),
+            ),
+            _ => None,
+        }
+    }
+}
+
+impl Dose {
+    fn refusal(self, value: f64, there: &Setting<'_>) -> Option<String> {
+        match self {
+            Self::CameraHeight | Self::FieldOfView | Self::Pitch | Self::Roll => (!there.draws).then(|| {
+                format!("the pictures of platform {} were taken before, by a camera that is as it was", there.platform)
+            }),
+            Self::Exposure | Self::ColourTemperature | Self::Blur | Self::Noise | Self::JpegQuality => (there.sees
+                == Sees::Labels)
+                .then(|| "it changes the pictures, and labels are not read from pictures".to_owned()),
+            Self::DroppedFrames => None,
+            Self::FrameSpacing if !there.has_poses => Some(no_poses("distances", there)),
+            Self::FrameSpacing => there.finer_than_there_is(value),
+            Self::HeadingNoise | Self::StartHeading if !there.has_poses => Some(no_poses("headings", there)),
+            Self::StartHeading if there.is_recorded() => {
+                Some(format!("platform {} has no pictures of other directions", there.platform))
+            }
+            Self::HeadingNoise | Self::StartHeading => None,
+        }
+    }
+}
+
+impl Setting<'_> {
+    /// Whether its pictures were taken one by one along a path.
+    fn is_recorded(&self) -> bool {
+        !self.draws && !self.graph
+    }
+
+    fn finer_than_there_is(&self, spacing_m: f64) -> Option<String> {
+        let (own_m, from) = match (self.graph, self.draws) {
+            (true, _) => (BETWEEN_VIEWPOINTS_M, "viewpoints"),
+            (false, false) => (BETWEEN_FRAMES_M, "frames that were recorded"),
+            (false, true) => return None,
+        };
+        (spacing_m < own_m).then(|| {
+            format!(
+                "platform {} has views only from {from}, about {own_m} m apart, so that frames can be left out but not put between",
+                self.platform
+            )
+        })
+    }
+}
+
+fn no_poses(of: &str, there: &Setting<'_>) -> String {
+    format!("the frames of platform {} have no poses, so that no {of} of the path are known", there.platform)
+}

@@ -1,0 +1,69 @@
+//! The clauses of a text with the frames of which they speak.
+
+use super::Written;
+use std::ops::RangeInclusive;
+use wayword_language::{reading, text::tokens};
+
+/// A part of a sentence, as the reader takes texts apart.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Clause {
+    /// Its words in lower case, without what joins it to the clause before.
+    pub(super) words: String,
+    /// The first and the last frame of which it may speak: those of its mentions, or, where it has none, those from the
+    /// clause before it to the one behind it.
+    pub(super) frames: RangeInclusive<usize>,
+}
+
+impl Clause {
+    /// Whether it speaks of one of these frames.
+    pub(super) fn speaks_of(&self, frames: &[usize]) -> bool {
+        frames.iter().any(|frame| self.frames.contains(frame))
+    }
+}
+
+/// The clauses of a text, in order. Those without words of their own are left out.
+pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
+    let tokens = tokens(written.text);
+    let numbers = reading::clauses(&tokens);
+    let mut parts: Vec<(usize, Vec<&str>, [usize; 2])> = Vec::new();
+    for (token, number) in tokens.iter().zip(numbers) {
+        match parts.last_mut() {
+            Some((last, words, span)) if *last == number => {
+                words.push(&token.word);
+                span[1] = token.span[1];
+            }
+            _ => parts.push((number, vec![&token.word], token.span)),
+        }
+    }
+    let mut told: Vec<(String, Option<RangeInclusive<usize>>)> = Vec::new();
+    for (_, words, span) in parts {
+        let own: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let here = written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
+        let frames: Vec<usize> = here.map(|mention| mention.frame).collect();
+        let range = frames.iter().min().zip(frames.iter().max()).map(|(first, last)| *first..=*last);
+        told.push((own.join(" "), range));
+    }
+    (0..told.len())
+        .map(|at| {
+            let before = told[..at].iter().rev().find_map(|(_, frames)| frames.as_ref()).map_or(0, |f| *f.end());
+            let behind =
+                told[at + 1..].iter().find_map(|(_, frames)| frames.as_ref()).map_or(usize::MAX, |f| *f.start());
+            let between = before.min(behind)..=before.max(behind);
+            Clause { words: told[at].0.clone(), frames: told[at].1.clone().unwrap_or(between) }
+        })
+        .collect()
+}
+
+fn is_joint(word: &str) -> bool {
+    matches!(word, "and" | "then") || !word.starts_with(char::is_alphanumeric)
+}
+
+/// The first of the clauses that speak of none of these frames and that the other text does not have, in order.
+pub(super) fn lost(of: &[Clause], in_other: &[Clause], may_change: &[usize]) -> Option<String> {
+    let mut rest = in_other.iter();
+    let kept = of.iter().filter(|clause| !clause.speaks_of(may_change));
+    kept.into_iter().find(|clause| !rest.any(|other| other.words == clause.words)).map(|clause| clause.words.clone())
+}

@@ -1,0 +1,81 @@
+//! Worlds that are mirrored or turned.
+
+use super::{Outcome, Written};
+use wayword_language::text::tokens;
+
+/// In a turned world the text is the same, byte for byte.
+#[must_use]
+pub fn turn(base: Written<'_>, changed: Written<'_>) -> Outcome {
+    Outcome::of_equal(base.text, changed.text)
+}
+
+/// In a mirrored world left and right have changed places in the text, and nothing else has changed.
+#[must_use]
+pub fn mirror(base: Written<'_>, changed: Written<'_>) -> Outcome {
+    Outcome::of_equal(&with_sides_swapped(base.text), changed.text)
+}
+
+/// What may stand behind "left" or "right" in a word for a side.
+const OF_SIDES: [&str; 6] = ["", "most", "hand", "ward", "wards", "side"];
+/// Words before which "right" means "just" ("right before the stairs").
+const JUST_BEFORE: [&str; 10] =
+    ["before", "next", "behind", "beside", "outside", "inside", "there", "here", "away", "across"];
+
+/// A text with each word for a side replaced by that for the other.
+fn with_sides_swapped(text: &str) -> String {
+    let tokens = tokens(text);
+    let (mut swapped, mut from) = (String::new(), 0);
+    for (at, token) in tokens.iter().enumerate() {
+        let word = &text[token.span[0]..token.span[1]];
+        let next = tokens.get(at + 1).map_or("", |next| next.word.as_str());
+        // "Turn right before the stairs" is a side all the same.
+        let is_turn = at > 0 && matches!(tokens[at - 1].word.as_str(), "turn" | "go" | "the" | "a" | "your");
+        let is_just = token.word == "right" && JUST_BEFORE.contains(&next) && !is_turn;
+        swapped.push_str(&text[from..token.span[0]]);
+        swapped.push_str(&if is_just { word.to_owned() } else { other_side(word) });
+        from = token.span[1];
+    }
+    swapped.push_str(&text[from..]);
+    swapped
+}
+
+/// The word for the other side in the same case; any other word as it is.
+fn other_side(word: &str) -> String {
+    for (one, other) in [("left", "right"), ("right", "left"), ("Left", "Right"), ("Right", "Left")] {
+        if let Some(rest) = word.strip_prefix(one).filter(|rest| OF_SIDES.contains(rest)) {
+            return format!("{other}{rest}");
+        }
+    }
+    word.to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Written<'_> {
+        Written { text, mentions: &[] }
+    }
+
+    #[test]
+    fn a_mirrored_text_says_the_other_side_and_keeps_its_case() {
+        let base = of("Turn left. Right of the leftmost bed, take the right-hand door and stop right next to the lamp.");
+        let mirrored =
+            of("Turn right. Left of the rightmost bed, take the left-hand door and stop right next to the lamp.");
+        assert_eq!(mirror(base, mirrored), Outcome::Holds);
+        assert_eq!(mirror(mirrored, base), Outcome::Holds);
+        assert!(matches!(mirror(base, base), Outcome::Differs(why) if why.contains("Turn right.")));
+        assert_eq!(mirror(of("Turn right before the stairs."), of("Turn left before the stairs.")), Outcome::Holds);
+    }
+
+    #[test]
+    fn a_text_without_sides_stays_in_a_mirrored_world() {
+        assert_eq!(mirror(of("Stop by the bed."), of("Stop by the bed.")), Outcome::Holds);
+    }
+
+    #[test]
+    fn in_a_turned_world_not_a_byte_changes() {
+        assert_eq!(turn(of("Turn left."), of("Turn left.")), Outcome::Holds);
+        assert!(matches!(turn(of("Turn left."), of("Turn left")), Outcome::Differs(_)));
+    }
+}
