@@ -1,9 +1,16 @@
 //! Worlds that are changed: wrappers over any platform.
 
 mod altered;
+mod camera;
+mod labels;
+mod poses;
 mod space;
+#[cfg(test)]
+mod testing;
 mod things;
 
 pub use altered::{Alter, Altered, Look};
+pub use camera::{CameraHeight, FieldOfView};
+pub use poses::HeadingNoise;
 pub use space::{Mirror, QuarterTurn};
 pub use things::{Added, Recoloured, Removed};
