@@ -3,6 +3,7 @@
 mod altered;
 mod camera;
 mod labels;
+mod pictures;
 mod poses;
 mod space;
 #[cfg(test)]
@@ -11,6 +12,7 @@ mod things;
 
 pub use altered::{Alter, Altered, Look};
 pub use camera::{CameraHeight, FieldOfView};
+pub use pictures::PictureChange;
 pub use poses::HeadingNoise;
 pub use space::{Mirror, QuarterTurn};
 pub use things::{Added, Recoloured, Removed};
