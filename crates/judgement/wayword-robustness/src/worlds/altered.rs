@@ -1,5 +1,6 @@
 //! A platform whose world is another one, altered.
 
+use super::labels::with_truth;
 use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
 use wayword_core::{
     DVec3, Depth, Frame, FromAbove, Gaze, Heading, Island, ObjectId, Path, PathRequest, Placed, Platform,
@@ -42,6 +43,11 @@ pub trait Alter: Send + Sync {
     /// When such a view cannot be made.
     fn view_after(&self, _look: Look<'_>, before: View) -> Result<View, PlatformError> {
         Ok(before)
+    }
+
+    /// Whether an eye that looks from elsewhere is still in the room of the frame, so that the room is asked for there.
+    fn keeps_room(&self) -> bool {
+        false
     }
 
     /// How far away is what the view shows; `None` where the change leaves that open.
@@ -105,7 +111,13 @@ impl<P: Platform, A: Alter> Altered<P, A> {
         look: impl Fn(&Frame, Gaze) -> Result<View, PlatformError>,
     ) -> Result<View, PlatformError> {
         let (before, gaze_before) = self.alter.look_before(scene, from, gaze);
-        self.alter.view_after(Look { scene, from, gaze }, look(&before, gaze_before)?)
+        let after = self.alter.view_after(Look { scene, from, gaze }, look(&before, gaze_before)?)?;
+        if !self.alter.keeps_room() {
+            return Ok(after);
+        }
+        let here = self.platform.look_without_picture(scene, &self.alter.frame_before(from), gaze_before)?;
+        let room = here.ground_truth().and_then(|truth| truth.room.clone());
+        Ok(with_truth(after, |truth| truth.room = room))
     }
 }
 
@@ -189,6 +201,13 @@ impl<P: Platform, A: Alter> Platform for Altered<P, A> {
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         self.platform.files(scene)
     }
+}
+
+/// A frame's place as text, by which draws are made.
+pub(super) fn keyed(frame: &Frame) -> String {
+    let (bits, viewpoint) = frame.place();
+    let [x, y, z] = bits;
+    format!("{x:x} {y:x} {z:x} {}", viewpoint.as_ref().map_or("", ViewpointId::as_str))
 }
 
 fn graph_after(before: &ViewpointGraph, alter: &impl Alter) -> Result<ViewpointGraph, GraphError> {

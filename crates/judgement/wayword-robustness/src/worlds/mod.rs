@@ -1,9 +1,18 @@
 //! Worlds that are changed: wrappers over any platform.
 
 mod altered;
+mod camera;
+mod labels;
+mod pictures;
+mod poses;
 mod space;
+#[cfg(test)]
+mod testing;
 mod things;
 
 pub use altered::{Alter, Altered, Look};
+pub use camera::{CameraHeight, FieldOfView};
+pub use pictures::PictureChange;
+pub use poses::HeadingNoise;
 pub use space::{Mirror, QuarterTurn};
 pub use things::{Added, Recoloured, Removed};

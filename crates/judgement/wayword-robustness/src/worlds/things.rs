@@ -1,7 +1,7 @@
 //! Worlds with a thing less, a thing more, or a thing of another colour, by their labels. Pictures stay as they are, so these
 //! changes are only for who reads labels.
 
-use super::{Alter, altered::Look};
+use super::{Alter, altered::Look, labels::with_labels};
 use std::collections::BTreeSet;
 use wayword_core::{Frame, Heading, Label, ObjectId, PlatformError, SceneId, View};
 
@@ -71,11 +71,4 @@ impl Added {
             ..self.object.clone()
         })
     }
-}
-
-/// A view with other labels; one without ground truth stays as it is.
-fn with_labels(view: View, change: impl FnOnce(&mut Vec<Label>)) -> View {
-    let Some(mut truth) = view.ground_truth().cloned() else { return view };
-    change(&mut truth.labels);
-    View::new(view.pose, view.horizontal_fov_rad, view.image, Some(truth))
 }

@@ -1,0 +1,169 @@
+//! Paths that are changed. None of these changes moves a frame off the polyline of the path.
+
+use crate::draws::uniform;
+use wayword_core::{Frame, Heading, Path, Pose, path::Stop};
+
+/// A frame that lies this near to one of the path, metres along it, is that frame.
+const SAME_M: f64 = 1e-6;
+
+/// Least distance between two frames that can be asked for, metres.
+const LEAST_SPACING_M: f64 = 0.05;
+
+/// A changed path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChangedPath {
+    /// The path, under the same id.
+    pub path: Path,
+    /// For each of its frames, the frame of the path before the change that it stands for.
+    pub base_frame_of: Vec<usize>,
+}
+
+/// The path walked from its end to its start. It begins along its first hop and has no target, because that was at the other
+/// end. Of an unknown motion only the order changes.
+#[must_use]
+pub fn reversed(path: &Path) -> ChangedPath {
+    let base_frame_of: Vec<usize> = (0..path.frames.len()).rev().collect();
+    let frames = if path.motion.is_known() {
+        Path::frames_along(base_frame_of.iter().map(|base| stop(&path.frames[*base])).collect(), None)
+    } else {
+        base_frame_of.iter().map(|base| path.frames[*base].clone()).collect()
+    };
+    ChangedPath { path: Path { frames, target: None, ..path.clone() }, base_frame_of }
+}
+
+/// The path with frames at equal distances of at most `spacing_m` metres along its polyline, both ends kept. A frame that
+/// falls on one of the path keeps its viewpoint; its level is that of the nearest one. A path of unknown motion, or with one
+/// frame, stays as it is.
+#[must_use]
+pub fn spaced(path: &Path, spacing_m: f64) -> ChangedPath {
+    let at_m = along_m(path);
+    let length_m = at_m.last().copied().unwrap_or(0.0);
+    if !path.motion.is_known() || length_m <= SAME_M || !spacing_m.is_finite() {
+        return unchanged(path);
+    }
+    let steps = libm::ceil(length_m / spacing_m.max(LEAST_SPACING_M) - 1e-9).max(1.0) as usize;
+    let places: Vec<f64> = (0..=steps).map(|step| length_m * step as f64 / steps as f64).collect();
+    let base_frame_of: Vec<usize> = places.iter().map(|place_m| nearest(&at_m, *place_m)).collect();
+    let stops = places.iter().zip(&base_frame_of).map(|(place_m, base)| stop_at(path, &at_m, *place_m, *base));
+    rejoined(path, stops.collect(), base_frame_of)
+}
+
+/// The path with only those of its frames that are at least `spacing_m` metres along it from the one kept before, both ends
+/// kept: for platforms that cannot be seen between frames.
+#[must_use]
+pub fn thinned(path: &Path, spacing_m: f64) -> ChangedPath {
+    let at_m = along_m(path);
+    let last = path.frames.len().saturating_sub(1);
+    let mut kept: Vec<usize> = Vec::new();
+    for frame in 0..path.frames.len() {
+        let is_far = kept.last().is_none_or(|before| at_m[frame] - at_m[*before] >= spacing_m - SAME_M);
+        if is_far || frame == last {
+            kept.push(frame);
+        }
+    }
+    without_others(path, kept)
+}
+
+/// The path with each frame between its first and its last dropped with a chance of `percent` per cent. Each frame has one
+/// draw by the seed and the path's id, so that one that is dropped at 10 % is also dropped at 30 %.
+#[must_use]
+pub fn dropped(path: &Path, percent: f64, seed: u64) -> ChangedPath {
+    let last = path.frames.len().saturating_sub(1);
+    let is_kept = |frame: &usize| {
+        let draw = || uniform(seed, &["dropped frames", &path.id, &frame.to_string()]);
+        *frame == 0 || *frame == last || draw() >= percent / 100.0
+    };
+    without_others(path, (0..path.frames.len()).filter(is_kept).collect())
+}
+
+/// The path with its start heading turned by `turn_deg` degrees, positive right. A path of unknown motion stays as it is.
+#[must_use]
+pub fn start_heading(path: &Path, turn_deg: f64) -> ChangedPath {
+    let mut changed = unchanged(path);
+    if path.motion.is_known()
+        && let Some(first) = changed.path.frames.first_mut()
+    {
+        first.pose.heading = first.pose.heading.turned(turn_deg.to_radians());
+    }
+    changed
+}
+
+/// The path without an opening turn: its first frame looks along the first hop.
+#[must_use]
+pub fn along(path: &Path) -> ChangedPath {
+    let mut changed = unchanged(path);
+    let hop = path.frames.windows(2).find_map(|pair| Heading::towards(pair[0].pose.position, pair[1].pose.position));
+    if path.motion.is_known()
+        && let (Some(first), Some(hop)) = (changed.path.frames.first_mut(), hop)
+    {
+        first.pose.heading = hop;
+    }
+    changed
+}
+
+fn unchanged(path: &Path) -> ChangedPath {
+    ChangedPath { path: path.clone(), base_frame_of: (0..path.frames.len()).collect() }
+}
+
+/// The path with only these of its frames.
+fn without_others(path: &Path, kept: Vec<usize>) -> ChangedPath {
+    if kept.len() == path.frames.len() {
+        return unchanged(path);
+    }
+    if path.motion.is_known() {
+        return rejoined(path, kept.iter().map(|frame| stop(&path.frames[*frame])).collect(), kept);
+    }
+    let frames = kept.iter().map(|frame| path.frames[*frame].clone()).collect();
+    ChangedPath { path: Path { frames, ..path.clone() }, base_frame_of: kept }
+}
+
+/// The path along other stops, from its own start heading to its own end.
+fn rejoined(path: &Path, stops: Vec<Stop>, base_frame_of: Vec<usize>) -> ChangedPath {
+    let start = path.frames.first().map(|frame| frame.pose.heading);
+    let mut after = Path { frames: Path::frames_along(stops, start), ..path.clone() };
+    if let (Some(before), Some(now), Some(target)) = (path.frames.last(), after.frames.last(), &mut after.target)
+        && before.pose.heading.turn_to(now.pose.heading).abs() > SAME_M
+    {
+        // Somebody who arrives from elsewhere sees the target on another side.
+        target.told_by.retain(|distinction| !distinction.needs_pose());
+    }
+    ChangedPath { path: after, base_frame_of }
+}
+
+fn stop(frame: &Frame) -> Stop {
+    let Frame { pose: Pose { position, .. }, viewpoint, level } = frame.clone();
+    Stop { position, viewpoint, level }
+}
+
+/// How far along the path each frame is, metres.
+fn along_m(path: &Path) -> Vec<f64> {
+    let mut at_m = 0.0;
+    let mut before = path.frames.first().map(|frame| frame.pose.position);
+    let place = |frame: &Frame| {
+        let here = frame.pose.position;
+        at_m += before.replace(here).map_or(0.0, |before| before.distance(here));
+        at_m
+    };
+    path.frames.iter().map(place).collect()
+}
+
+/// The frame that is nearest to a place along the path; the earlier of two.
+fn nearest(at_m: &[f64], place_m: f64) -> usize {
+    let off = |frame: &usize| (at_m[*frame] - place_m).abs();
+    (0..at_m.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
+}
+
+/// The stop at a place along the path, whose nearest frame is `base`.
+fn stop_at(path: &Path, at_m: &[f64], place_m: f64, base: usize) -> Stop {
+    let here = stop(&path.frames[base]);
+    if (at_m[base] - place_m).abs() <= SAME_M {
+        return here;
+    }
+    let to = at_m.partition_point(|at_m| *at_m < place_m).clamp(1, at_m.len() - 1);
+    let share = (place_m - at_m[to - 1]) / (at_m[to] - at_m[to - 1]);
+    let position = path.frames[to - 1].pose.position.lerp(path.frames[to].pose.position, share);
+    Stop { position, viewpoint: None, ..here }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,95 @@
+//! Cameras of another height or width.
+
+use super::Alter;
+use wayword_core::{DVec3, Frame, Gaze, SceneId};
+
+/// An eye at another height over the floor. Only the eye that looks is moved: frames, ways and rooms stay as they are.
+///
+/// A platform refuses a place at which it knows no room or ground, so it must take an eye that is lower than its own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraHeight {
+    /// Height of the eye that looks, metres over the floor.
+    pub height_m: f64,
+    /// Height of the eye in the platform's frames, metres over the floor.
+    pub eye_m: f64,
+}
+
+/// Views of another width. A view says how wide it is: where a platform cannot look so far, it is narrower.
+///
+/// It decides how wide the platform looks, so it goes around a [`Tilt`](super::Tilt), which has to look wider.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FieldOfView {
+    /// Horizontal field of view, degrees.
+    pub deg: f64,
+}
+
+impl Alter for CameraHeight {
+    fn look_before(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
+        let mut eye = from.clone();
+        eye.pose.position += DVec3::Z * (self.height_m - self.eye_m);
+        (eye, gaze)
+    }
+
+    fn keeps_room(&self) -> bool {
+        self.height_m != self.eye_m
+    }
+}
+
+impl Alter for FieldOfView {
+    fn look_before(&self, _: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
+        (from.clone(), Gaze { horizontal_fov_rad: self.deg.to_radians(), ..gaze })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::worlds::{Altered, testing::*};
+    use std::collections::BTreeSet;
+    use wayword_core::{Label, ObjectId, Platform, View};
+
+    fn seen(view: &View) -> BTreeSet<ObjectId> {
+        labels(view).iter().map(|label| label.object.clone()).collect()
+    }
+
+    #[test]
+    fn a_narrower_view_shows_no_more_and_says_how_wide_it_is() {
+        let (scene, path) = walk();
+        for frame in &path.frames {
+            let gaze = Gaze::quarter(frame.pose.heading);
+            let [narrow, as_it_is] =
+                [60.0, 90.0].map(|deg| Altered::new(House, FieldOfView { deg }).look(&scene, frame, gaze).unwrap());
+            assert!((narrow.horizontal_fov_rad.to_degrees() - 60.0).abs() < 1e-9);
+            let outside = |label: &Label| gaze.heading.turn_to(label.heading).abs() > 30f64.to_radians();
+            assert!(!labels(&narrow).iter().any(outside));
+            // In a narrow view things are larger, so it may label what is too small for a label in the wide one.
+            let near = |view: &View| {
+                let near = |label: &&Label| label.distance_m.is_some_and(|far_m| far_m < 3.0);
+                labels(view).iter().filter(near).map(|label| label.object.clone()).collect::<BTreeSet<_>>()
+            };
+            assert!(near(&narrow).is_subset(&seen(&as_it_is)), "{narrow:?} {as_it_is:?}");
+            let plain = House.look(&scene, frame, gaze).unwrap();
+            assert_eq!((&plain.image, labels(&plain)), (&as_it_is.image, labels(&as_it_is)));
+        }
+    }
+
+    #[test]
+    fn a_raised_eye_sees_more_of_the_floor_and_is_in_the_same_room() {
+        let (scene, path) = walk();
+        for frame in &path.frames {
+            let gaze = Gaze::quarter(frame.pose.heading);
+            let plain = House.look(&scene, frame, gaze).unwrap();
+            let raised = Altered::new(House, CameraHeight { height_m: 1.9, eye_m: 1.5 });
+            let view = raised.look(&scene, frame, gaze).unwrap();
+            assert!((view.pose.position.z - frame.pose.position.z - 0.4).abs() < 1e-12);
+            assert_eq!(view.ground_truth().unwrap().room, plain.ground_truth().unwrap().room);
+            for label in labels(&view) {
+                let Some(before) = labels(&plain).iter().find(|before| before.object == label.object) else { continue };
+                assert!(label.elevation_rad < before.elevation_rad);
+                assert_eq!((label.heading, label.position), (before.heading, before.position));
+            }
+            let same = Altered::new(House, CameraHeight { height_m: 1.5, eye_m: 1.5 });
+            assert_eq!(same.look(&scene, frame, gaze).unwrap().image, plain.image);
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! A gaussian blur.
+
+use super::light::{linear_from_srgb, srgb_from_linear};
+use wayword_core::{Image, image::WrongPixelCount};
+
+/// A picture blurred by a gaussian, which is cut off at three standard deviations. Beyond its edge the picture goes on with
+/// the pixels of the edge.
+pub(super) fn blurred(image: &Image, sigma_px: f64) -> Result<Image, WrongPixelCount> {
+    let kernel = kernel(sigma_px);
+    let [width, height] = [image.width_px(), image.height_px()].map(|side| side as usize);
+    let linear: Vec<f64> = (0..=u8::MAX).map(linear_from_srgb).collect();
+    let light: Vec<f64> = image.rgb().iter().map(|level| linear[usize::from(*level)]).collect();
+    let along_rows = convolved(&light, &kernel, (width, 3), (height, width * 3));
+    let along_columns = convolved(&along_rows, &kernel, (height, width * 3), (width, 3));
+    Image::new(image.width_px(), image.height_px(), along_columns.into_iter().map(srgb_from_linear).collect())
+}
+
+/// The weights from the middle outwards, which sum to 1 over both sides.
+fn kernel(sigma_px: f64) -> Vec<f64> {
+    let sigma_px = sigma_px.max(0.0);
+    let reach = libm::ceil(3.0 * sigma_px) as usize;
+    let weight = |step: usize| {
+        let off = if step == 0 { 0.0 } else { step as f64 / sigma_px };
+        libm::exp(-0.5 * off * off)
+    };
+    let half: Vec<f64> = (0..=reach).map(weight).collect();
+    let sum = 2.0 * half.iter().sum::<f64>() - half[0];
+    half.into_iter().map(|weight| weight / sum).collect()
+}
+
+/// Three interleaved colours convolved along one direction, which has so many pixels at such a stride, on each line of the
+/// other direction.
+fn convolved(
+    light: &[f64],
+    kernel: &[f64],
+    (count, stride): (usize, usize),
+    (lines, next_line): (usize, usize),
+) -> Vec<f64> {
+    let mut out = vec![0.0; light.len()];
+    for line in 0..lines {
+        for at in 0..count {
+            for colour in 0..3 {
+                let value = |at: usize| light[line * next_line + at * stride + colour];
+                let pair = |(off, weight): (usize, &f64)| {
+                    weight * (value(at.saturating_sub(off)) + value((at + off).min(count - 1)))
+                };
+                let sides: f64 = kernel.iter().enumerate().skip(1).map(pair).sum();
+                out[line * next_line + at * stride + colour] = kernel[0] * value(at) + sides;
+            }
+        }
+    }
+    out
+}

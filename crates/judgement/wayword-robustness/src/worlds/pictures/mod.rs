@@ -1,0 +1,78 @@
+//! Pictures that are changed. What is known beside the picture stays as it is.
+
+mod blur;
+mod jpeg;
+mod light;
+mod noise;
+
+use super::{Alter, altered::Look};
+use std::sync::Arc;
+use wayword_core::{Image, PlatformError, View, image::WrongPixelCount};
+
+/// A change of every picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PictureChange {
+    /// More light or less: linear light times two to the power of `stops`. What gets brighter than white is white.
+    Exposure {
+        /// Stops; 0 changes nothing.
+        stops: f64,
+    },
+    /// Light of another colour, for a camera that is set to 6500 K: lower is more orange. A grey keeps its luminance.
+    ColourTemperature {
+        /// Kelvin, 1667 to 25000; 6500 changes nothing.
+        kelvin: f64,
+    },
+    /// A gaussian blur of the linear light, as by a lens that is out of focus.
+    Blur {
+        /// Standard deviation, pixels; 0 changes nothing.
+        sigma_px: f64,
+    },
+    /// Gaussian noise on each pixel and colour. It is drawn by the scene, the place, the gaze and the seed: who looks twice
+    /// sees the same, and the noise of two doses is proportional where nothing is cut off.
+    Noise {
+        /// Standard deviation, per cent of full scale; 0 changes nothing.
+        percent: f64,
+        /// The seed of the draws.
+        seed: u64,
+    },
+    /// A JPEG file between the camera and who sees.
+    Jpeg {
+        /// Quality, 1 to 99, as the IJG's library counts it; 100 stands for no such file, and changes nothing.
+        quality_percent: u8,
+    },
+}
+
+/// A picture could not be changed.
+#[derive(Debug, thiserror::Error)]
+enum Unchanged {
+    #[error(transparent)]
+    Size(#[from] WrongPixelCount),
+    #[error("its picture cannot be made a JPEG file: {0}")]
+    Jpeg(#[from] image::ImageError),
+}
+
+impl Alter for PictureChange {
+    fn view_after(&self, look: Look<'_>, mut view: View) -> Result<View, PlatformError> {
+        let Some(image) = &view.image else { return Ok(view) };
+        let after = self.applied(look, image);
+        let after =
+            after.map_err(|why| PlatformError::NotDrawn { scene: look.scene.clone(), reason: why.to_string() })?;
+        view.image = Some(Arc::new(after));
+        Ok(view)
+    }
+}
+
+impl PictureChange {
+    fn applied(self, look: Look<'_>, image: &Image) -> Result<Image, Unchanged> {
+        Ok(match self {
+            Self::Exposure { stops } => light::lit(image, [libm::exp2(stops); 3])?,
+            Self::ColourTemperature { kelvin } => light::lit(image, light::gains(kelvin))?,
+            Self::Blur { sigma_px } => blur::blurred(image, sigma_px)?,
+            Self::Noise { percent, seed } => noise::noisy(image, percent, &mut noise::dice(look, seed))?,
+            Self::Jpeg { quality_percent } => jpeg::through_jpeg(image, quality_percent)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,27 @@
+//! Gaussian noise.
+
+use crate::{
+    draws::normal_pair,
+    worlds::altered::{Look, keyed},
+};
+use rand::Rng;
+use wayword_core::{Image, image::WrongPixelCount, rng};
+
+/// The draws for what one look shows.
+pub(super) fn dice(look: Look<'_>, seed: u64) -> impl Rng {
+    let gaze = [look.gaze.heading.rad(), look.gaze.horizontal_fov_rad].map(f64::to_bits);
+    let gaze = format!("{:x} {:x}", gaze[0], gaze[1]);
+    rng(seed, &["picture noise", look.scene.as_str(), &keyed(look.from), &gaze])
+}
+
+/// A picture with noise on every value, per cent of full scale.
+pub(super) fn noisy(image: &Image, percent: f64, dice: &mut impl Rng) -> Result<Image, WrongPixelCount> {
+    let levels = 255.0 * percent / 100.0;
+    let mut rgb = image.rgb().to_vec();
+    for pair in rgb.chunks_mut(2) {
+        for (level, draw) in pair.iter_mut().zip(normal_pair(dice)) {
+            *level = (f64::from(*level) + levels * draw + 0.5).clamp(0.0, 255.0) as u8;
+        }
+    }
+    Image::new(image.width_px(), image.height_px(), rgb)
+}

@@ -1,0 +1,117 @@
+//! A log whose headings are wrong.
+
+use super::{
+    Alter,
+    altered::{Look, keyed},
+    labels::with_labels,
+};
+use crate::draws::normal;
+use wayword_core::{DVec3, Frame, Gaze, Label, Motion, Path, PlatformError, Pose, SceneId, View};
+
+/// The log's headings are off by a gaussian error that is drawn for each place. What is seen is seen from the true heading,
+/// and written down under the wrong one: a thing ahead of the camera stays ahead of it, and lies somewhere else in the world.
+///
+/// "Before" is the truth, "after" the log. An error is drawn by the seed, the scene and the frame's
+/// [`place`](Frame::place), so the errors of two values of `deg` with one seed are proportional.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeadingNoise {
+    /// Standard deviation of the error, degrees.
+    pub deg: f64,
+    /// The seed of the draws.
+    pub seed: u64,
+}
+
+impl HeadingNoise {
+    /// By how much the log's heading at a frame is off, radians, positive to the right.
+    #[must_use]
+    pub fn error_rad(&self, scene: &SceneId, frame: &Frame) -> f64 {
+        self.deg.to_radians() * normal(self.seed, &["heading noise", scene.as_str(), &keyed(frame)])
+    }
+
+    /// The path as the log has it, made of the true one. Positions stay as they are; of the target it forgets what depends on
+    /// the pose of somebody who arrives. A path of unknown motion stays as it is.
+    #[must_use]
+    pub fn logged(&self, truth: &Path) -> Path {
+        let mut log = truth.clone();
+        if truth.motion == Motion::Unknown {
+            return log;
+        }
+        for frame in &mut log.frames {
+            frame.pose.heading = frame.pose.heading.turned(self.error_rad(&truth.scene, frame));
+        }
+        if let Some(target) = &mut log.target {
+            target.told_by.retain(|distinction| !distinction.needs_pose());
+        }
+        log
+    }
+}
+
+impl Alter for HeadingNoise {
+    fn look_before(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
+        let error_rad = self.error_rad(scene, from);
+        let pose = Pose { heading: from.pose.heading.turned(-error_rad), ..from.pose };
+        (Frame { pose, ..from.clone() }, Gaze { heading: gaze.heading.turned(-error_rad), ..gaze })
+    }
+
+    fn view_after(&self, look: Look<'_>, before: View) -> Result<View, PlatformError> {
+        let error_rad = self.error_rad(look.scene, look.from);
+        let eye = before.pose.position;
+        let logged = |label: &mut Label| {
+            label.heading = label.heading.turned(error_rad);
+            label.position = label.position.map(|position| turned_about(eye, position, error_rad));
+        };
+        let mut after = with_labels(before, |labels| labels.iter_mut().for_each(logged));
+        after.pose.heading = after.pose.heading.turned(error_rad);
+        Ok(after)
+    }
+
+    fn path_after(&self, before: Path) -> Path {
+        self.logged(&before)
+    }
+}
+
+/// A position turned about the vertical through the eye, radians, clockwise seen from above.
+fn turned_about(eye: DVec3, position: DVec3, rad: f64) -> DVec3 {
+    let (sin, cos) = libm::sincos(rad);
+    let offset = position - eye;
+    eye + DVec3::new(offset.x * cos + offset.y * sin, offset.y * cos - offset.x * sin, offset.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::worlds::{Altered, testing::*};
+    use wayword_core::{Heading, Platform};
+
+    #[test]
+    fn three_times_the_noise_is_three_times_each_error() {
+        let (scene, path) = walk();
+        let [little, much] = [5.0, 15.0].map(|deg| HeadingNoise { deg, seed: 3 });
+        for frame in &path.frames {
+            let [one, three] = [little, much].map(|noise| noise.error_rad(&scene, frame));
+            assert!((three - 3.0 * one).abs() < 1e-12);
+        }
+        assert_eq!(HeadingNoise { deg: 0.0, seed: 3 }.logged(&path).frames, path.frames);
+    }
+
+    #[test]
+    fn the_camera_sees_the_same_and_the_log_puts_it_elsewhere() {
+        let (scene, path) = walk();
+        let noise = HeadingNoise { deg: 20.0, seed: 4 };
+        let log = noise.logged(&path);
+        for (truth, logged) in path.frames.iter().zip(&log.frames) {
+            let error_rad = noise.error_rad(&scene, truth);
+            let seen = House.look(&scene, truth, Gaze::quarter(truth.pose.heading)).unwrap();
+            let noisy = Altered::new(House, noise).look(&scene, logged, Gaze::quarter(logged.pose.heading)).unwrap();
+            // The wrong heading and back is the true one but for rounding, which can shift an edge by a pixel.
+            assert!(mean_difference(&seen, &noisy) < 0.1);
+            assert!(noisy.pose.heading.turn_to(logged.pose.heading).abs() < 1e-9);
+            for (a, b) in labels(&seen).iter().zip(labels(&noisy)) {
+                assert_eq!(a.object, b.object);
+                assert!((a.heading.turn_to(b.heading) - error_rad).sin().abs() < 1e-9);
+                let towards = Heading::towards(logged.pose.position, b.position.unwrap()).unwrap();
+                assert!(towards.turn_to(b.heading).abs() < 1e-6, "{b:?}");
+            }
+        }
+    }
+}
