@@ -6,11 +6,16 @@
 //!
 //! Architecture invariant: nothing here reads a file, runs a model or knows a platform beyond the trait.
 
+mod agreement;
 mod change;
 mod draws;
+mod facts;
 pub mod metamorphic;
 pub mod paths;
+pub mod ratio;
 pub mod worlds;
 
+pub use agreement::Agreement;
 pub use change::{Change, ChangeError, Dose, Sees, Setting, Whole};
+pub use facts::{Facts, Floor};
 pub use paths::ChangedPath;

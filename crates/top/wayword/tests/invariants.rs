@@ -124,6 +124,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-recording",
                 "wayword-remote",
                 "wayword-render",
+                "wayword-robustness",
                 "wayword-study",
                 "wayword-synthesis",
                 "wayword-world",

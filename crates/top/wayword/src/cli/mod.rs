@@ -7,6 +7,7 @@ mod evaluate;
 mod ledger;
 mod models;
 mod perceive;
+mod robustness;
 mod similarity;
 mod study;
 mod view;
@@ -23,6 +24,7 @@ pub use evaluate::Evaluate;
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
+pub use robustness::Robustness;
 pub use similarity::{By, Similarity};
 pub use study::{
     Control, NamedSet, Study, StudyClose, StudyCommand, StudyForget, StudyInvite, StudyMode, StudyNew, StudyPlan,
@@ -95,6 +97,8 @@ pub enum Command {
     Compare(Box<Compare>),
     /// Score anyone's trajectories as the evaluators of R2R and REVERIE do, with confidence intervals.
     Evaluate(Evaluate),
+    /// Write a run's texts again in changed worlds, and say how much of them changes.
+    Robustness(Box<Robustness>),
     /// Let people walk by texts, rate them or choose between them, on a site of your own.
     Study(Study),
     /// Check keys, servers, models and data, and say how to fix what is wrong.

@@ -17,6 +17,7 @@ mod models;
 mod perceive;
 mod platforms;
 mod report;
+pub(crate) mod robustness;
 mod similarity;
 #[cfg(feature = "study")]
 mod study;
@@ -47,6 +48,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Compare(args) => compare::run(&args, output),
         Command::Evaluate(args) => evaluate::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
+        Command::Robustness(args) => robustness::run(&args, output),
         Command::Similarity(args) => similarity::run(&args, output),
         #[cfg(feature = "study")]
         Command::Study(args) => study::run(&args, output),

@@ -17,6 +17,7 @@ mod pictures;
 mod places;
 mod records;
 pub mod replay;
+pub(crate) mod robustness;
 mod rows;
 pub(crate) mod sheet;
 mod spans;
@@ -223,6 +224,8 @@ fn templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("comparison.html", include_str!("comparison/page.html"))?;
     templates.add_template("table.html", include_str!("comparison/table.html"))?;
     templates.add_template("forest.html", include_str!("comparison/forest.html"))?;
+    templates.add_template("robustness.css", include_str!("robustness/style.css"))?;
+    templates.add_template("robustness.html", include_str!("robustness/page.html"))?;
     templates.add_template("replay.html", include_str!("replay/replay.html"))?;
     Ok(templates)
 }

@@ -1,0 +1,156 @@
+//! How far two texts for one path agree.
+
+use crate::facts::Facts;
+use serde::{Deserialize, Serialize};
+use wayword_language::lexicon::agree;
+
+/// Landmarks of two texts are the same where their names agree and their frames are no farther apart than this: a thing can be
+/// told when one sees it and when one is beside it.
+const FRAMES_APART: usize = 1;
+
+/// The agreement of two texts, from 0 to 1 for each kind of statement; `None` where neither has that kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// F1 of landmarks at the same frames.
+    pub landmarks: Option<f64>,
+    /// 1 less the edit distance of the turns, over the longer list.
+    pub turns: Option<f64>,
+    /// The same of the rooms.
+    pub rooms: Option<f64>,
+    /// 1 where both say the same of floors, else 0.
+    pub floors: Option<f64>,
+}
+
+impl Agreement {
+    /// The agreement of two texts. It does not matter which is first.
+    #[must_use]
+    pub fn of(a: &Facts, b: &Facts) -> Self {
+        Self {
+            landmarks: landmarks(a, b),
+            turns: sequences(&a.turns, &b.turns),
+            rooms: sequences(&a.rooms, &b.rooms),
+            floors: (!a.floors.is_empty() || !b.floors.is_empty()).then(|| f64::from(u8::from(a.floors == b.floors))),
+        }
+    }
+
+    /// Landmarks, turns, rooms and floors, in this order.
+    #[must_use]
+    pub fn kinds(&self) -> [Option<f64>; 4] {
+        [self.landmarks, self.turns, self.rooms, self.floors]
+    }
+}
+
+/// F1 over the largest matching.
+fn landmarks(a: &Facts, b: &Facts) -> Option<f64> {
+    let all = a.landmarks.len() + b.landmarks.len();
+    let is_same = |(name, frame): &(String, usize), (other, at): &(String, usize)| {
+        frame.abs_diff(*at) <= FRAMES_APART && agree(name, other)
+    };
+    let partners: Vec<Vec<usize>> = a
+        .landmarks
+        .iter()
+        .map(|one| (0..b.landmarks.len()).filter(|at| is_same(one, &b.landmarks[*at])).collect())
+        .collect();
+    let mut taken: Vec<Option<usize>> = vec![None; b.landmarks.len()];
+    let matched =
+        (0..partners.len()).filter(|one| matches(*one, &partners, &mut taken, &mut vec![false; b.landmarks.len()]));
+    let matched = matched.count();
+    (all > 0).then(|| 2.0 * matched as f64 / all as f64)
+}
+
+/// Finds a partner for one, where others may have to take another (Kuhn 1955).
+fn matches(one: usize, partners: &[Vec<usize>], taken: &mut [Option<usize>], tried: &mut [bool]) -> bool {
+    for &partner in &partners[one] {
+        if std::mem::replace(&mut tried[partner], true) {
+            continue;
+        }
+        if taken[partner].is_none_or(|other| matches(other, partners, taken, tried)) {
+            taken[partner] = Some(one);
+            return true;
+        }
+    }
+    false
+}
+
+/// 1 less the edit distance (Levenshtein 1966) over the longer list.
+fn sequences<T: PartialEq>(a: &[T], b: &[T]) -> Option<f64> {
+    let longer = a.len().max(b.len());
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (at, one) in a.iter().enumerate() {
+        let mut before = row[0];
+        row[0] = at + 1;
+        for (to, other) in b.iter().enumerate() {
+            let replaced = before + usize::from(one != other);
+            before = row[to + 1];
+            row[to + 1] = replaced.min(before + 1).min(row[to] + 1);
+        }
+    }
+    (longer > 0).then(|| 1.0 - row[b.len()] as f64 / longer as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::Floor;
+    use proptest::prelude::*;
+    use wayword_core::Side;
+
+    fn facts() -> impl Strategy<Value = Facts> {
+        let name = prop_oneof![Just("sofa"), Just("couch"), Just("lamp"), Just("bed")];
+        let landmarks = prop::collection::vec((name.prop_map(str::to_owned), 0..5_usize), 0..5);
+        let turns = prop::collection::vec(prop_oneof![Just(Side::Left), Just(Side::Right)], 0..5);
+        let rooms = prop::collection::vec(prop_oneof![Just("kitchen".to_owned()), Just("hallway".to_owned())], 0..4);
+        (landmarks, turns, rooms).prop_map(|(landmarks, turns, rooms)| Facts {
+            landmarks,
+            turns,
+            rooms,
+            floors: Vec::new(),
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn it_does_not_matter_which_is_first(a in facts(), b in facts()) {
+            prop_assert_eq!(Agreement::of(&a, &b), Agreement::of(&b, &a));
+        }
+
+        #[test]
+        fn equal_texts_agree(a in facts()) {
+            let agreement = Agreement::of(&a, &a);
+            prop_assert!(agreement.kinds().into_iter().flatten().all(|share| share == 1.0));
+        }
+
+        #[test]
+        fn it_is_a_share(a in facts(), b in facts()) {
+            prop_assert!(Agreement::of(&a, &b).kinds().into_iter().flatten().all(|share| (0.0..=1.0).contains(&share)));
+        }
+    }
+
+    #[test]
+    fn each_kind_is_held_against_its_own() {
+        let landmarks = |all: &[(&str, usize)]| all.iter().map(|(name, at)| ((*name).to_owned(), *at)).collect();
+        let a = Facts {
+            landmarks: landmarks(&[("sofa", 1), ("lamp", 4)]),
+            turns: vec![Side::Left, Side::Right],
+            rooms: vec!["kitchen".into()],
+            floors: vec![Floor::Up],
+        };
+        let b = Facts {
+            landmarks: landmarks(&[("couch", 2), ("lamp", 1)]),
+            turns: vec![Side::Left],
+            rooms: vec!["kitchen".into(), "hallway".into()],
+            floors: vec![Floor::Down],
+        };
+        // A couch is a sofa, one frame on; the lamp is another one.
+        assert_eq!(Agreement::of(&a, &b).kinds(), [Some(0.5), Some(0.5), Some(0.5), Some(0.0)]);
+        assert_eq!(Agreement::of(&Facts::default(), &Facts::default()).kinds(), [None; 4]);
+    }
+
+    #[test]
+    fn a_landmark_gives_way_to_one_that_has_no_other_partner() {
+        let at = |frames: &[usize]| frames.iter().map(|frame| ("sofa".to_owned(), *frame)).collect();
+        let a = Facts { landmarks: at(&[1, 0]), ..Facts::default() };
+        let b = Facts { landmarks: at(&[1, 2]), ..Facts::default() };
+        assert_eq!(Agreement::of(&a, &b).landmarks, Some(1.0));
+    }
+}

@@ -1,0 +1,90 @@
+//! What a text states of its path.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use wayword_core::{Climb, Mention, MentionKind, Side};
+use wayword_language::{
+    lexicon::{normal, room_name},
+    reading::{What, read},
+};
+
+/// The statements of a text, each kind in the order of the text.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Facts {
+    /// The landmarks that have evidence: name in normal spelling, and frame.
+    pub landmarks: Vec<(String, usize)>,
+    /// The turns; `Behind` is a turn around.
+    pub turns: Vec<Side>,
+    /// The rooms that have evidence, by their usual names; those in a row that are equal are one.
+    pub rooms: Vec<String>,
+    /// The climbs and storeys.
+    pub floors: Vec<Floor>,
+}
+
+/// A statement about floors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Floor {
+    /// One goes up.
+    Up,
+    /// One goes down.
+    Down,
+    /// One is on this storey; 0 is the top one.
+    Storey(u32),
+}
+
+impl Facts {
+    /// The statements of a text. `mentions` are those that the checks found, and `place` gives the frame of the path with which
+    /// it is compared for a frame of its own path.
+    #[must_use]
+    pub fn of(text: &str, mentions: &[Mention], place: impl Fn(usize) -> usize) -> Self {
+        let words = |mention: &Mention| text.get(mention.span[0]..mention.span[1]).map(normal);
+        let of_kind = |kind: MentionKind| mentions.iter().filter(move |mention| mention.kind == kind);
+        let landmarks =
+            of_kind(MentionKind::Landmark).filter_map(|mention| Some((words(mention)?, place(mention.frame))));
+        let usual = |name: String| room_name(&name).map_or_else(|| name.clone(), str::to_owned);
+        let mut rooms: Vec<String> = of_kind(MentionKind::Room).filter_map(words).map(usual).collect();
+        rooms.dedup();
+        let (mut turns, mut floors) = (Vec::new(), Vec::new());
+        for event in read(text, &BTreeSet::new()).claims().events {
+            match event.what {
+                What::Turn(side) => turns.push(side),
+                What::Climb(climb) | What::Storey(climb) => floors.extend(Floor::of(climb)),
+                What::Floor(floor) => floors.push(Floor::Storey(floor.number.unwrap_or(0))),
+                _ => {}
+            }
+        }
+        Self { landmarks: landmarks.collect(), turns, rooms, floors }
+    }
+}
+
+impl Floor {
+    fn of(climb: Climb) -> Option<Self> {
+        match climb {
+            Climb::Up => Some(Self::Up),
+            Climb::Down => Some(Self::Down),
+            Climb::Level => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_states_landmarks_turns_rooms_and_floors() {
+        let text = "Leave the bedroom, turn left at the sofa and go up the stairs. Stop in the bedroom.";
+        let mention = |words: &str, kind, frame| {
+            let start = text.find(words).unwrap();
+            Mention { span: [start, start + words.len()], kind, frame }
+        };
+        let mentions = [mention("bedroom", MentionKind::Room, 0), mention("sofa", MentionKind::Landmark, 2)];
+        let facts = Facts::of(text, &mentions, |frame| frame * 2);
+        assert_eq!(facts.landmarks, [("sofa".to_owned(), 4)]);
+        assert_eq!(
+            (facts.turns, facts.rooms, facts.floors),
+            (vec![Side::Left], vec!["bedroom".to_owned()], vec![Floor::Up])
+        );
+    }
+}

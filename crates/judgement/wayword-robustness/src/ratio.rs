@@ -1,0 +1,271 @@
+//! R: how much a change matters, between asking again and another path.
+
+use crate::agreement::Agreement;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use wayword_core::seed::derive;
+use wayword_metrics::Estimate;
+
+/// R needs so many paths.
+pub const LEAST_PATHS: usize = 30;
+/// And anchors that are so far apart.
+pub const LEAST_GAP: f64 = 0.1;
+
+/// The kinds of statements, and all of them together.
+pub const KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
+
+/// The agreements of the text of one path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OfPath {
+    /// Its scene: texts of one scene are not independent.
+    pub scene: String,
+    /// With its text in the changed world.
+    pub changed: Agreement,
+    /// With its text in the same world, asked again.
+    pub again: Agreement,
+    /// With the text of another path.
+    pub other: Agreement,
+}
+
+/// R of one kind of statement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Robustness {
+    /// One of [`KINDS`].
+    pub kind: String,
+    /// The ratio with its interval.
+    pub r: Option<Estimate>,
+    /// Why there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The mean agreement with the changed world's text, over the same paths as the two that follow; `None` of no paths.
+    pub changed: Option<f64>,
+    /// With the text that was asked for again.
+    pub again: Option<f64>,
+    /// With another path's text.
+    pub other: Option<f64>,
+    /// Over how many paths.
+    pub paths: usize,
+}
+
+/// How intervals are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawing {
+    /// Number of resamples.
+    pub resamples: usize,
+    /// What an interval covers, as 0.95.
+    pub level: f64,
+    /// The seed.
+    pub seed: u64,
+}
+
+/// R of each kind of statement, and of their mean.
+///
+/// R is a ratio of means over the paths whose three agreements have that kind. Of the mean of kinds, each path counts with the
+/// kinds that all three have. The interval is a percentile bootstrap over whole scenes (Efron 1979), in which both anchors vary
+/// with the resample; a resample whose anchors are not apart is left out.
+#[must_use]
+pub fn robustness(paths: &[OfPath], drawing: Drawing) -> Vec<Robustness> {
+    KINDS.iter().enumerate().map(|(kind, name)| of_kind(paths, kind, name, drawing)).collect()
+}
+
+fn of_kind(paths: &[OfPath], kind: usize, name: &str, drawing: Drawing) -> Robustness {
+    let mut scenes: BTreeMap<&str, Sum> = BTreeMap::new();
+    for path in paths {
+        if let Some(three) = three(path, kind) {
+            scenes.entry(&path.scene).or_default().add(&three);
+        }
+    }
+    let scenes: Vec<Sum> = scenes.into_values().collect();
+    let all = scenes.iter().fold(Sum::default(), |all, scene| all.plus(scene));
+    let gap = all.mean(1) - all.mean(2);
+    let reason = match all.paths {
+        0 => Some("no path has such statements".to_owned()),
+        few if few < LEAST_PATHS => {
+            Some(format!("only {few} paths have such statements, and {LEAST_PATHS} are needed"))
+        }
+        _ if gap < LEAST_GAP => Some(format!(
+            "asking again agrees in {:.2} and another path in {:.2}; they have to be {LEAST_GAP} apart",
+            all.mean(1),
+            all.mean(2)
+        )),
+        _ => None,
+    };
+    let known = |of: usize| (all.paths > 0).then(|| all.mean(of));
+    Robustness {
+        kind: name.to_owned(),
+        r: reason.is_none().then(|| interval(&scenes, &all, name, drawing)),
+        reason,
+        changed: known(0),
+        again: known(1),
+        other: known(2),
+        paths: all.paths,
+    }
+}
+
+/// The three agreements of a path for a kind, or for the mean of those kinds that all three have.
+fn three(path: &OfPath, kind: usize) -> Option<[f64; 3]> {
+    let kinds = [path.changed.kinds(), path.again.kinds(), path.other.kinds()];
+    let of = |kind: usize| Some([kinds[0][kind]?, kinds[1][kind]?, kinds[2][kind]?]);
+    if kind < kinds[0].len() {
+        return of(kind);
+    }
+    let all: Vec<[f64; 3]> = (0..kinds[0].len()).filter_map(of).collect();
+    let mean = |at: usize| all.iter().map(|three| three[at]).sum::<f64>() / all.len() as f64;
+    (!all.is_empty()).then(|| [mean(0), mean(1), mean(2)])
+}
+
+/// Sums over paths.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    of: [f64; 3],
+    paths: usize,
+}
+
+impl Sum {
+    fn add(&mut self, three: &[f64; 3]) {
+        *self = self.plus(&Self { of: *three, paths: 1 });
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self { of: std::array::from_fn(|at| self.of[at] + other.of[at]), paths: self.paths + other.paths }
+    }
+
+    fn mean(&self, at: usize) -> f64 {
+        self.of[at] / self.paths.max(1) as f64
+    }
+
+    fn ratio(&self) -> f64 {
+        (self.mean(0) - self.mean(2)) / (self.mean(1) - self.mean(2))
+    }
+}
+
+fn interval(scenes: &[Sum], all: &Sum, name: &str, drawing: Drawing) -> Estimate {
+    let draw = |resample: usize, at: usize| {
+        let words = ["robustness", name, &resample.to_string(), &at.to_string()];
+        &scenes[(derive(drawing.seed, &words) >> 16) as usize % scenes.len()]
+    };
+    let resampled = |resample: usize| (0..scenes.len()).fold(Sum::default(), |sum, at| sum.plus(draw(resample, at)));
+    let apart = |sum: &Sum| sum.mean(1) - sum.mean(2) > f64::EPSILON;
+    let mut ratios: Vec<f64> =
+        (0..drawing.resamples.max(1)).map(resampled).filter(apart).map(|sum| sum.ratio()).collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    let tail = (1.0 - drawing.level) / 2.0;
+    let quantile = |share: f64| {
+        let at = share * ratios.len().saturating_sub(1) as f64;
+        let (below, above) = (ratios.get(at.floor() as usize)?, ratios.get(at.ceil() as usize)?);
+        Some(below + (above - below) * at.fract())
+    };
+    let mean = all.ratio();
+    Estimate {
+        mean,
+        low: quantile(tail).unwrap_or(mean),
+        high: quantile(1.0 - tail).unwrap_or(mean),
+        values: all.paths,
+        clusters: scenes.len(),
+    }
+}
+
+/// Change of R for one more of a dose's unit: the slope of the line of least squares. `None` of fewer than two doses.
+#[must_use]
+pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    let count = points.len() as f64;
+    let (dose, ratio) = (
+        points.iter().map(|point| point.0).sum::<f64>() / count,
+        points.iter().map(|point| point.1).sum::<f64>() / count,
+    );
+    let across: f64 = points.iter().map(|point| (point.0 - dose) * (point.1 - ratio)).sum();
+    let spread: f64 = points.iter().map(|point| (point.0 - dose) * (point.0 - dose)).sum();
+    (spread > 0.0).then(|| across / spread)
+}
+
+/// The doses at which R falls below `least`, first below the unchanged dose and then above it. Between two doses, and from the
+/// unchanged one, at which R is 1, the line is straight.
+#[must_use]
+pub fn falls_at(points: &[(f64, f64)], unchanged: f64, least: f64) -> Vec<f64> {
+    let one_way = |sign: f64| {
+        let mut ahead: Vec<(f64, f64)> =
+            points.iter().copied().filter(|(dose, _)| (dose - unchanged) * sign > 0.0).collect();
+        ahead.sort_by(|a, b| (a.0 * sign).total_cmp(&(b.0 * sign)));
+        let mut before = (unchanged, 1.0);
+        for point in ahead {
+            if point.1 < least {
+                return Some(before.0 + (point.0 - before.0) * (before.1 - least) / (before.1 - point.1));
+            }
+            before = point;
+        }
+        None
+    };
+    [-1.0, 1.0].into_iter().filter_map(one_way).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const DRAWING: Drawing = Drawing { resamples: 400, level: 0.95, seed: 1 };
+
+    fn turns(share: f64) -> Agreement {
+        Agreement { turns: Some(share), ..Agreement::default() }
+    }
+
+    fn paths(count: usize, changed: impl Fn(usize) -> f64) -> Vec<OfPath> {
+        let path = |at: usize| OfPath {
+            scene: format!("house-{}", at % 10),
+            changed: turns(changed(at)),
+            again: turns(0.8),
+            other: turns(0.2 + 0.1 * (at % 2) as f64),
+        };
+        (0..count).map(path).collect()
+    }
+
+    fn of_turns(paths: &[OfPath]) -> Robustness {
+        robustness(paths, DRAWING).remove(1)
+    }
+
+    #[test]
+    fn asking_again_is_one_and_another_path_is_zero() {
+        let again = of_turns(&paths(40, |_| 0.8)).r.unwrap();
+        assert!((again.mean - 1.0).abs() < 1e-12 && (again.low - 1.0).abs() < 1e-12, "{again:?}");
+        let other = of_turns(&paths(40, |at| 0.2 + 0.1 * (at % 2) as f64)).r.unwrap();
+        assert!(other.mean.abs() < 1e-12, "{other:?}");
+        let half = of_turns(&paths(40, |_| 0.525)).r.unwrap();
+        assert!((half.mean - 0.5).abs() < 1e-12 && half.clusters == 10);
+    }
+
+    #[test]
+    fn without_enough_paths_or_anchors_apart_there_is_a_reason() {
+        let few = of_turns(&paths(29, |_| 0.5));
+        assert_eq!(few.r, None);
+        assert_eq!(few.reason.unwrap(), "only 29 paths have such statements, and 30 are needed");
+        let mut near = paths(40, |_| 0.5);
+        near.iter_mut().for_each(|path| path.other = turns(0.75));
+        assert!(of_turns(&near).reason.unwrap().contains("0.1 apart"));
+        assert_eq!(robustness(&near, DRAWING)[0].reason.as_deref(), Some("no path has such statements"));
+    }
+
+    #[test]
+    fn the_mean_takes_the_kinds_that_all_three_have() {
+        let mut paths = paths(40, |_| 0.8);
+        paths.iter_mut().for_each(|path| path.changed.rooms = Some(0.0));
+        assert_eq!(robustness(&paths, DRAWING)[4].r.unwrap().mean, 1.0);
+    }
+
+    #[test]
+    fn the_dose_at_which_it_falls_lies_between_two() {
+        let falls = |points: &[(f64, f64)], unchanged: f64| falls_at(points, unchanged, 0.75);
+        assert_eq!(falls(&[(1.0, 1.0), (3.0, 0.5)], 0.0), [2.0]);
+        assert_eq!(falls(&[(60.0, 0.5), (120.0, 0.9)], 90.0), [75.0]);
+        assert!(falls(&[(1.0, 0.9)], 0.0).is_empty());
+        assert_eq!(slope(&[(0.0, 1.0), (2.0, 0.5)]), Some(-0.25));
+        assert_eq!(slope(&[(1.0, 0.5)]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn an_interval_holds_what_varies_between_scenes(off in 0.0..0.2f64) {
+            let found = of_turns(&paths(60, |at| 0.5 + off * ((at % 10) as f64 - 4.5) / 4.5)).r.unwrap();
+            prop_assert!(found.low <= found.mean + 1e-9 && found.mean <= found.high + 1e-9);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Which thing is removed, added or recoloured for a text.
+
+use super::{Added, Recoloured, Removed};
+use std::collections::BTreeSet;
+use wayword_core::{
+    DVec3, Frame, GroundTruth, Heading, Label, Mention, MentionKind, ObjectId, Path, View, seed::derive,
+};
+use wayword_language::lexicon::{agree, same_colour};
+
+/// What is added: things that people name as landmarks. The first that is not seen along the path is taken.
+const ADDED: [&str; 5] = ["piano", "fireplace", "bookshelf", "armchair", "wardrobe"];
+/// How far ahead of a frame, and how far to its right, a thing is added, metres.
+const ADDED_AT_M: (f64, f64) = (1.2, 0.9);
+/// How far below the eye its centre is, metres.
+const ADDED_BELOW_M: f64 = 0.8;
+/// A thing that is added is seen from no farther than this, metres.
+const SEEN_M: f64 = 4.0;
+/// Colours that a thing may get: the first that differs from its own.
+const COLOURS: [&str; 2] = ["purple", "orange"];
+
+/// What is labelled along a path: for each frame the labels all around it.
+#[derive(Debug, Clone, Default)]
+pub struct Labelled(Vec<Vec<Label>>);
+
+/// A text whose things are changed.
+#[derive(Debug, Clone, Copy)]
+pub struct Telling<'a> {
+    /// Its words.
+    pub text: &'a str,
+    /// Its statements, each with its frame.
+    pub mentions: &'a [Mention],
+    /// Its path.
+    pub path: &'a Path,
+}
+
+/// A thing that a text tells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Thing {
+    /// The words of the text.
+    pub words: String,
+    /// Its name as the labels have it.
+    pub name: String,
+    /// It and its namesakes in sight of the path.
+    pub objects: BTreeSet<ObjectId>,
+    /// The frames that see one of these.
+    pub seen_from: Vec<usize>,
+    /// The word for the colour that the text tells of it.
+    pub colour: Option<String>,
+}
+
+impl Labelled {
+    /// The labels of the views around each frame of a path.
+    #[must_use]
+    pub fn along(panoramas: &[Vec<View>]) -> Self {
+        let labels = |view: &View| view.ground_truth().map(|GroundTruth { labels, .. }| labels.clone());
+        let around = |views: &Vec<View>| views.iter().filter_map(labels).flatten().collect();
+        Self(panoramas.iter().map(around).collect())
+    }
+
+    /// The landmarks that a text tells and that are labelled where it tells them. Its target is none of them.
+    #[must_use]
+    pub fn told(&self, telling: Telling<'_>) -> Vec<Thing> {
+        let Telling { text, mentions, path } = telling;
+        let is_target = |name: &str| path.target.as_ref().is_some_and(|target| agree(&target.name, name));
+        let landmarks = mentions.iter().filter(|mention| mention.kind == MentionKind::Landmark);
+        let told = landmarks.filter_map(|mention| {
+            let words = text.get(mention.span[0]..mention.span[1])?;
+            let label = self.0.get(mention.frame)?.iter().find(|label| agree(&label.name, words))?;
+            let before = text[..mention.span[0]].split_whitespace().next_back();
+            Some(self.thing(words, &label.name, before))
+        });
+        told.filter(|thing| !is_target(&thing.name)).collect()
+    }
+
+    /// A thing of that name. `before` is the word before its name: its colour, where it is one.
+    fn thing(&self, words: &str, name: &str, before: Option<&str>) -> Thing {
+        let (mut objects, mut seen_from, mut colours) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
+        for (frame, labels) in self.0.iter().enumerate() {
+            let alike: Vec<&Label> = labels.iter().filter(|label| agree(&label.name, name)).collect();
+            if !alike.is_empty() {
+                seen_from.push(frame);
+            }
+            objects.extend(alike.iter().map(|label| label.object.clone()));
+            colours.extend(alike.iter().filter_map(|label| label.colour.clone()));
+        }
+        let said = words.split_whitespace().chain(before);
+        let colour = said.into_iter().find(|word| colours.contains(*word)).map(str::to_owned);
+        Thing { words: words.to_owned(), name: name.to_owned(), objects, seen_from, colour }
+    }
+
+    /// A thing that the text tells, drawn by the seed, and the world without it and its namesakes.
+    #[must_use]
+    pub fn without(&self, telling: Telling<'_>, seed: u64) -> Option<(Thing, Removed)> {
+        let told = self.told(telling);
+        let thing = told.get(drawn(seed, "remove", telling.path, told.len())?)?.clone();
+        let objects = thing.objects.clone();
+        Some((thing, Removed { objects }))
+    }
+
+    /// A thing whose colour the text tells, drawn by the seed, and the world in which it and its namesakes have another.
+    #[must_use]
+    pub fn recoloured(&self, telling: Telling<'_>, seed: u64) -> Option<(Thing, Recoloured)> {
+        let told: Vec<Thing> = self.told(telling).into_iter().filter(|thing| thing.colour.is_some()).collect();
+        let thing = told.get(drawn(seed, "material", telling.path, told.len())?)?.clone();
+        let is_other = |colour: &&&str| !thing.colour.as_ref().is_some_and(|before| same_colour(before, colour));
+        let colour = (*COLOURS.iter().find(is_other)?).to_owned();
+        let objects = thing.objects.clone();
+        Some((thing, Recoloured { objects, colour }))
+    }
+
+    /// A thing that nothing along the path is called, beside a frame that the seed draws, and the world with it.
+    #[must_use]
+    pub fn with_one_more(&self, path: &Path, seed: u64) -> Option<(Thing, Added)> {
+        let is_new = |name: &&&str| !self.0.iter().flatten().any(|label| agree(&label.name, name));
+        let name = (*ADDED.iter().find(is_new)?).to_owned();
+        let frame = path.frames.get(drawn(seed, "add", path, path.frames.len())?)?;
+        let (ahead_m, right_m) = ADDED_AT_M;
+        let to = frame.pose.heading;
+        let beside = to.turned(std::f64::consts::FRAC_PI_2).direction() * right_m;
+        let position = frame.pose.position + to.direction() * ahead_m + beside - DVec3::Z * ADDED_BELOW_M;
+        let is_near = |frame: &Frame| frame.pose.position.distance(position) <= SEEN_M;
+        let seen_from: Vec<usize> = (0..path.frames.len()).filter(|at| is_near(&path.frames[*at])).collect();
+        let object = ObjectId::new(format!("added-{name}")).ok()?;
+        let label = Label {
+            object: object.clone(),
+            name: name.clone(),
+            heading: Heading::NORTH,
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m: None,
+            position: Some(position),
+            colour: None,
+        };
+        let frames = seen_from.iter().map(|at| path.frames[*at].clone()).collect();
+        let added = Added { scene: path.scene.clone(), object: label, seen_from: frames };
+        let objects = BTreeSet::from([object]);
+        Some((Thing { words: name.clone(), name, objects, seen_from, colour: None }, added))
+    }
+}
+
+/// One of so many, by the seed and the path's name; `None` of none.
+fn drawn(seed: u64, purpose: &str, path: &Path, of: usize) -> Option<usize> {
+    let number = derive(seed, &["robustness", purpose, &path.id]);
+    number.checked_rem(of as u64).and_then(|at| usize::try_from(at).ok())
+}

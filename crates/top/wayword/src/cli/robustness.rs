@@ -1,0 +1,46 @@
+//! `wayword robustness` as the user types it.
+
+use crate::settings::Service;
+use clap::Args;
+use std::path::PathBuf;
+
+/// `wayword robustness`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword robustness --run runs/houses --out runs/robust
+      Write the run's texts again in the default set of changed worlds, and say how much of them changes.
+  wayword robustness --list
+      Show all changes, with their units and what the default set is.
+  wayword robustness --run runs/houses --change mirror --change camera_height_m=0.3,0.88,1.6 --out runs/robust
+
+Give the same command again to continue. With more --change, only these are added. docs/ROBUSTNESS.md says what the figures mean.")]
+pub struct Robustness {
+    /// The run whose texts are written again. Its platform, paths, styles and models are used.
+    #[arg(long, value_name = "DIR", required_unless_present = "list")]
+    pub run: Option<PathBuf>,
+    /// A change, with its doses: NAME or NAME=DOSE,DOSE. Give the flag several times. [default: the default set of --list]
+    #[arg(long, value_name = "CHANGE")]
+    pub change: Vec<String>,
+    /// Folder for the texts, the figures and the page. Give the same command again to continue.
+    #[arg(long, value_name = "DIR", required_unless_present = "list")]
+    pub out: Option<PathBuf>,
+    /// Show all changes and the default set, and do nothing.
+    #[arg(long)]
+    pub list: bool,
+    /// Use only the first N paths of the run.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub limit: Option<u32>,
+    /// Number of bootstrap resamples for the intervals.
+    #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
+    pub resamples: u32,
+    /// Seed of everything random.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Settings as TOML; only its tables `service` and `providers` are used.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// How models are reached.
+    #[command(flatten)]
+    pub service: Service,
+}

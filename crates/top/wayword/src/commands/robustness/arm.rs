@@ -1,0 +1,85 @@
+//! The arms of a robustness run: in each, all paths are written for once.
+
+use wayword_robustness::{Change, Whole};
+
+/// One arm.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Arm {
+    /// The run's world, as it is.
+    Unchanged,
+    /// The same, asked once more.
+    Again,
+    /// Another path of the building.
+    Other,
+    /// Without a turn before the first hop: what the reversed path is held against.
+    Forward,
+    /// A changed world or path.
+    Changed(Change),
+}
+
+impl Arm {
+    /// All arms that some changes need, in the order in which they are made: those that others are held against come first.
+    pub(super) fn of(changes: &[Change]) -> Vec<Self> {
+        let is_measured = changes.iter().any(|change| change.dose().is_some() || matches!(change, Change::Platform(_)));
+        let reverses = changes.contains(&Change::Whole(Whole::Reverse));
+        let mut arms = vec![Self::Unchanged];
+        if is_measured {
+            arms.extend([Self::Again, Self::Other]);
+        }
+        if reverses {
+            arms.push(Self::Forward);
+        }
+        arms.extend(changes.iter().cloned().map(Self::Changed));
+        arms
+    }
+
+    /// Its name in the files.
+    pub(super) fn id(&self) -> String {
+        match self {
+            Self::Unchanged => "unchanged".to_owned(),
+            Self::Again => "again".to_owned(),
+            Self::Other => "other-path".to_owned(),
+            Self::Forward => "forward".to_owned(),
+            Self::Changed(change) => change.id(),
+        }
+    }
+
+    /// What is shown while it is made.
+    pub(super) fn said(&self) -> String {
+        match self {
+            Self::Changed(change) => change.to_string(),
+            other => other.id(),
+        }
+    }
+
+    /// Whether one thing of the world is changed, another one for each text.
+    pub(super) fn is_edit(&self) -> bool {
+        matches!(self, Self::Changed(Change::Whole(Whole::Remove | Whole::Add | Whole::Material)))
+    }
+
+    /// Whether the agent walks by its texts: they are of the run's path, from its start to its end.
+    pub(super) fn is_walked(&self) -> bool {
+        match self {
+            Self::Unchanged | Self::Again => true,
+            Self::Other | Self::Forward => false,
+            Self::Changed(change) => *change != Change::Whole(Whole::Reverse) && !self.is_edit(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_others_are_held_against_comes_first() {
+        let arms = |typed: &[&str]| -> Vec<String> {
+            let changes: Vec<Change> = typed.iter().flat_map(|typed| Change::parse(typed).unwrap()).collect();
+            Arm::of(&changes).iter().map(Arm::id).collect()
+        };
+        assert_eq!(arms(&["mirror"]), ["unchanged", "mirror"]);
+        assert_eq!(arms(&["reverse"]), ["unchanged", "forward", "reverse"]);
+        let spaced = ["unchanged", "again", "other-path", "frame-spacing-m-0.5", "frame-spacing-m-3"];
+        assert_eq!(arms(&["frame_spacing_m=0.5,3"]), spaced);
+    }
+}

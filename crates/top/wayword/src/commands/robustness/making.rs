@@ -1,0 +1,178 @@
+//! Makes the texts of one path in one arm.
+
+use super::{
+    arm::Arm,
+    base::Base,
+    other::{self, Other},
+    reader,
+    record::{Edit, Line, Told},
+    world,
+};
+use crate::{
+    demands::Demands,
+    error::Error,
+    follow::KnownScenes,
+    item::Item,
+    pipeline::{RunPlatform, panoramas, write},
+    settings::Settings,
+    styles::Measured,
+    team::Team,
+};
+use std::{collections::BTreeMap, slice};
+use wayword_core::{Path, Platform, seed::derive};
+use wayword_robustness::{
+    Change, Whole,
+    worlds::{Altered, Labelled, Mirror, QuarterTurn, Telling, Thing},
+};
+use wayword_synthesis::repair::Outcome;
+
+/// Who writes, and in which world.
+pub(super) struct Crew<'a> {
+    pub(super) base: &'a Base,
+    /// The world of the run.
+    pub(super) platform: &'a dyn Platform,
+    /// Its roles.
+    pub(super) team: &'a Team,
+    /// The same, asked once more.
+    pub(super) again: &'a Team,
+    pub(super) seed: u64,
+    /// Views of one path that are talked about at a time.
+    pub(super) threads: usize,
+}
+
+/// The lines of the unchanged arm, by path.
+pub(super) type Unchanged = BTreeMap<String, Line>;
+
+/// An arm with what is known of its scenes, and of those in which its agent walks.
+pub(super) struct InArm<'a> {
+    pub(super) arm: &'a Arm,
+    pub(super) scenes: KnownScenes,
+    /// The platform in whose space the agent walks, and its distances.
+    pub(super) walks: &'a dyn Platform,
+    pub(super) demands: Demands<'a>,
+}
+
+impl Crew<'_> {
+    /// The texts of a path of the run in an arm.
+    ///
+    /// # Errors
+    /// When a view cannot be had, or a model fails.
+    pub(super) fn line(&self, within: &InArm<'_>, path: &Path, unchanged: &Unchanged) -> Result<Line, Error> {
+        let arm = within.arm;
+        let all_frames = |path: &Path| (0..path.frames.len()).collect();
+        match arm {
+            Arm::Unchanged => self.line_of(within, self.team, self.platform, (path.clone(), all_frames(path))),
+            Arm::Again => self.line_of(within, self.again, self.platform, (path.clone(), all_frames(path))),
+            Arm::Other => match other::other(self.platform, path, unchanged, self.seed)? {
+                Some(Other::Told(line)) => Ok(Line { arm: arm.id(), path: path.clone(), ..*line }),
+                Some(Other::New(other)) => {
+                    let frames = all_frames(&other);
+                    self.line_of(within, self.team, self.platform, (other, frames))
+                }
+                None => Ok(Line::left_out(arm, path, "no other path of its building has as many hops")),
+            },
+            Arm::Changed(change) if arm.is_edit() => self.edited(within, change, path, unchanged),
+            Arm::Forward | Arm::Changed(_) => match world::of(arm, self.platform, path, self.seed) {
+                Ok(world) => {
+                    self.line_of(within, self.team, world.platform.as_ref(), (world.path, world.base_frame_of))
+                }
+                Err(reason) => Ok(Line::left_out(arm, path, &reason)),
+            },
+        }
+    }
+
+    fn line_of(
+        &self,
+        within: &InArm<'_>,
+        team: &Team,
+        platform: &dyn Platform,
+        (path, base_frame_of): (Path, Vec<usize>),
+    ) -> Result<Line, Error> {
+        let mut texts = self.texts(within, team, platform, &path, &self.base.styles)?;
+        if within.arm.is_walked() {
+            for told in &mut texts {
+                let Some(text) = &told.text else { continue };
+                told.arrived = reader::arrives(within.walks, &within.demands, &path, text)?;
+            }
+        }
+        Ok(Line { arm: within.arm.id(), path, base_frame_of, texts, left_out: None })
+    }
+
+    /// The texts of a path in some styles.
+    fn texts(
+        &self,
+        within: &InArm<'_>,
+        team: &Team,
+        platform: &dyn Platform,
+        path: &Path,
+        styles: &[Measured],
+    ) -> Result<Vec<Told>, Error> {
+        let again = within.arm == &Arm::Again;
+        let seed = self.base.settings.seed;
+        let seed = if again { derive(seed, &["robustness", "again"]) } else { seed };
+        let settings = Settings { seed, ..self.base.settings.clone() };
+        let world = RunPlatform { platform, data: None, scenes: &within.scenes };
+        let item = Item::Walk(Box::new(path.clone()));
+        let written = write(&item, &settings, world, team, styles, self.threads)?;
+        let told = |(outcome, style): (Outcome, &Measured)| Told::of(&style.style.name, outcome);
+        Ok(written.outcomes.into_iter().zip(styles).map(told).collect())
+    }
+
+    /// The texts of a path whose world has one thing changed: for each style one that its text tells.
+    fn edited(&self, within: &InArm<'_>, change: &Change, path: &Path, unchanged: &Unchanged) -> Result<Line, Error> {
+        let labelled = Labelled::along(&panoramas(self.platform, path)?);
+        let mut texts = Vec::new();
+        for style in &self.base.styles {
+            let before = unchanged.get(&path.id).and_then(|line| line.told(&style.style.name));
+            let Some((text, before)) = before.and_then(|told| Some((told.text.as_ref()?, told))) else { continue };
+            let telling = Telling { text, mentions: &before.mentions, path };
+            let Some((platform, edit)) = self.edit(change, &labelled, telling) else { continue };
+            // What is known of a scene differs from text to text.
+            let own = InArm {
+                arm: within.arm,
+                scenes: KnownScenes::new(),
+                walks: within.walks,
+                demands: Demands::new(within.walks),
+            };
+            for told in self.texts(&own, self.team, platform.as_ref(), path, slice::from_ref(style))? {
+                texts.push(Told { edit: Some(edit.clone()), ..told });
+            }
+        }
+        let base_frame_of = (0..path.frames.len()).collect();
+        Ok(Line { arm: within.arm.id(), path: path.clone(), base_frame_of, texts, left_out: None })
+    }
+
+    /// The world with one thing changed; `None` where the text tells no such thing.
+    fn edit<'w>(
+        &'w self,
+        change: &Change,
+        labelled: &Labelled,
+        telling: Telling<'_>,
+    ) -> Option<(Box<dyn Platform + 'w>, Edit)> {
+        let edit = |thing: Thing, colours| Edit { name: thing.words, seen_from: thing.seen_from, colours };
+        Some(match change {
+            Change::Whole(Whole::Remove) => {
+                let (thing, removed) = labelled.without(telling, self.seed)?;
+                (Box::new(Altered::new(self.platform, removed)), edit(thing, None))
+            }
+            Change::Whole(Whole::Material) => {
+                let (thing, recoloured) = labelled.recoloured(telling, self.seed)?;
+                let colours = thing.colour.clone().map(|before| [before, recoloured.colour.clone()]);
+                (Box::new(Altered::new(self.platform, recoloured)), edit(thing, colours))
+            }
+            _ => {
+                let (thing, added) = labelled.with_one_more(telling.path, self.seed)?;
+                (Box::new(Altered::new(self.platform, added)), edit(thing, None))
+            }
+        })
+    }
+}
+
+/// The platform in whose space the agent walks by the texts of an arm.
+pub(super) fn walked<'a>(arm: &Arm, platform: &'a dyn Platform) -> Box<dyn Platform + 'a> {
+    match arm {
+        Arm::Changed(Change::Whole(Whole::Mirror)) => Box::new(Altered::new(platform, Mirror)),
+        Arm::Changed(Change::Whole(Whole::Turn)) => Box::new(Altered::new(platform, QuarterTurn)),
+        _ => Box::new(platform),
+    }
+}

@@ -1,0 +1,84 @@
+//! What is kept of a path in one arm: a line of `texts.jsonl`.
+
+use super::arm::Arm;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use wayword_core::{Mention, Path};
+use wayword_synthesis::repair::Outcome;
+
+/// A path in one arm, with its texts.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Line {
+    /// The arm.
+    pub(super) arm: String,
+    /// The path in that arm; its id is that of the run's path.
+    pub(super) path: Path,
+    /// For each of its frames the frame of the run's path that it stands for.
+    pub(super) base_frame_of: Vec<usize>,
+    /// Its texts, one for each style.
+    pub(super) texts: Vec<Told>,
+    /// Why there is none, where the path has no such arm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) left_out: Option<String>,
+}
+
+/// A text of one style.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Told {
+    pub(super) style: String,
+    /// Its words; `None` where every text failed its checks.
+    pub(super) text: Option<String>,
+    /// Its statements that have evidence.
+    pub(super) mentions: Vec<Mention>,
+    /// The one thing that was changed for this text.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) edit: Option<Edit>,
+    /// Whether the agent arrived by it, where it walked: 1 or 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) arrived: Option<f64>,
+}
+
+/// One thing that was removed, added, or given another colour.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Edit {
+    /// Its name.
+    pub(super) name: String,
+    /// The frames that see it, or one of its name.
+    pub(super) seen_from: Vec<usize>,
+    /// The word for its colour before and after.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) colours: Option<[String; 2]>,
+}
+
+impl Told {
+    /// What came of a text.
+    pub(super) fn of(style: &str, outcome: Outcome) -> Self {
+        let (text, mentions) = match outcome {
+            Outcome::Accepted(instruction) => (Some(instruction.text), instruction.mentions),
+            Outcome::Rejected { .. } => (None, Vec::new()),
+        };
+        Self { style: style.to_owned(), text, mentions, edit: None, arrived: None }
+    }
+}
+
+/// The key of a line: an arm and a path.
+pub(super) fn key(arm: &str, path: &str) -> String {
+    format!("{arm}\u{1f}{path}")
+}
+
+impl Line {
+    pub(super) fn key_of(value: &Value) -> Option<String> {
+        Some(key(value.get("arm")?.as_str()?, value.get("path")?.get("id")?.as_str()?))
+    }
+
+    /// A path that has no such arm.
+    pub(super) fn left_out(arm: &Arm, path: &Path, reason: &str) -> Self {
+        let left_out = Some(reason.to_owned());
+        Self { arm: arm.id(), path: path.clone(), base_frame_of: Vec::new(), texts: Vec::new(), left_out }
+    }
+
+    /// Its text of a style.
+    pub(super) fn told(&self, style: &str) -> Option<&Told> {
+        self.texts.iter().find(|told| told.style == style)
+    }
+}

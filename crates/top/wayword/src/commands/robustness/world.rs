@@ -1,0 +1,79 @@
+//! The changed world of a path.
+
+use super::arm::Arm;
+use wayword_core::{Path, Platform};
+use wayword_robustness::{
+    Change, Dose, Whole,
+    paths::{self, ChangedPath},
+    worlds::{Alter, Altered, CameraHeight, FieldOfView, HeadingNoise, Mirror, PictureChange, QuarterTurn},
+};
+
+/// A world with a path through it.
+pub(super) struct World<'a> {
+    pub(super) platform: Box<dyn Platform + 'a>,
+    pub(super) path: Path,
+    /// For each frame of the path the frame of the run's path that it stands for.
+    pub(super) base_frame_of: Vec<usize>,
+}
+
+/// The height of the eyes of a platform's paths over the floor, metres.
+const EYE_M: f64 = 1.5;
+
+/// The world of an arm for a path; an error, with the reason, where it has none.
+pub(super) fn of<'a>(arm: &Arm, platform: &'a dyn Platform, path: &Path, seed: u64) -> Result<World<'a>, String> {
+    let walked =
+        |ChangedPath { path, base_frame_of }: ChangedPath| World { platform: Box::new(platform), path, base_frame_of };
+    let change = match arm {
+        Arm::Changed(change) => change,
+        Arm::Forward => return Ok(walked(paths::along(path))),
+        _ => return Err("the world is not changed".to_owned()),
+    };
+    Ok(match change {
+        Change::Whole(Whole::Mirror) => altered(platform, Mirror, path),
+        Change::Whole(Whole::Turn) => altered(platform, QuarterTurn, path),
+        Change::Whole(Whole::Reverse) => walked(paths::reversed(path)),
+        Change::By(Dose::CameraHeight, height_m) => {
+            altered(platform, CameraHeight { height_m: *height_m, eye_m: EYE_M }, path)
+        }
+        Change::By(Dose::FieldOfView, deg) => altered(platform, FieldOfView { deg: *deg }, path),
+        Change::By(Dose::HeadingNoise, deg) => altered(platform, HeadingNoise { deg: *deg, seed }, path),
+        Change::By(Dose::FrameSpacing, spacing_m) => walked(paths::spaced(path, *spacing_m)),
+        Change::By(Dose::DroppedFrames, percent) => walked(paths::dropped(path, *percent, seed)),
+        Change::By(Dose::StartHeading, deg) => walked(paths::start_heading(path, *deg)),
+        other => match pixels(other, seed) {
+            Some(pixels) => altered(platform, pixels, path),
+            None => return Err(unmade(other)),
+        },
+    })
+}
+
+/// Why a change cannot be made here, whatever the path; `None` where it can.
+pub(super) fn refusal(change: &Change) -> Option<String> {
+    let is_made = match change {
+        Change::Platform(_) | Change::By(Dose::Pitch | Dose::Roll, _) => false,
+        Change::Whole(_) | Change::By(..) => true,
+    };
+    (!is_made).then(|| unmade(change))
+}
+
+/// A change of the pixels of every picture.
+fn pixels(change: &Change, seed: u64) -> Option<PictureChange> {
+    let Change::By(dose, value) = *change else { return None };
+    Some(match dose {
+        Dose::Exposure => PictureChange::Exposure { stops: value },
+        Dose::ColourTemperature => PictureChange::ColourTemperature { kelvin: value },
+        Dose::Blur => PictureChange::Blur { sigma_px: value },
+        Dose::Noise => PictureChange::Noise { percent: value, seed },
+        Dose::JpegQuality => PictureChange::Jpeg { quality_percent: value as u8 },
+        _ => return None,
+    })
+}
+
+fn unmade(change: &Change) -> String {
+    format!("this version of the program cannot make {change} yet")
+}
+
+fn altered<'a, A: Alter + 'a>(platform: &'a dyn Platform, alter: A, path: &Path) -> World<'a> {
+    let path = alter.path_after(path.clone());
+    World { base_frame_of: (0..path.frames.len()).collect(), path, platform: Box::new(Altered::new(platform, alter)) }
+}
