@@ -1,0 +1,77 @@
+//! `wayword robustness` on a small run over a made-up building.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{Building, Ran};
+use serde_json::Value;
+use std::fs;
+
+fn robustness(building: &Building, args: &[&str]) -> Ran {
+    building.wayword(&[&["robustness", "--run", "run", "--out", "robust", "--resamples", "100"], args].concat())
+}
+
+fn results(building: &Building) -> Value {
+    serde_json::from_str(&fs::read_to_string(building.path("robust/robustness.json")).unwrap()).unwrap()
+}
+
+fn texts(building: &Building) -> String {
+    fs::read_to_string(building.path("robust/texts.jsonl")).unwrap()
+}
+
+#[test]
+fn texts_are_written_again_and_what_must_change_is_judged() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let ran = robustness(&building, &["--change", "mirror", "--change", "turn"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found = results(&building);
+    assert_eq!(found["again"]["equal"], found["again"]["of"], "the unchanged world gives the run's texts");
+    for style in found["styles"].as_array().unwrap() {
+        for expectation in style["expectations"].as_array().unwrap() {
+            assert!(expectation["told"].as_u64() > Some(0), "{expectation}");
+        }
+    }
+    let page = fs::read_to_string(building.path("robust/report.html")).unwrap();
+    assert!(page.contains("the text is equal but left and right") && !page.contains("<script"));
+}
+
+#[test]
+fn a_run_that_is_continued_writes_nothing_twice_and_ends_the_same() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let changes = ["--change", "start_heading_deg=90", "--limit", "2"];
+    let ran = robustness(&building, &changes);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let whole = texts(&building);
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    // A process that was killed leaves half a line.
+    let half = lines[..3].concat() + &lines[3][..20];
+    fs::write(building.path("robust/texts.jsonl"), half).unwrap();
+    assert_eq!(robustness(&building, &changes).code, Some(0));
+    assert_eq!(texts(&building), whole);
+    // More changes may be asked for; other paths may not.
+    assert_eq!(robustness(&building, &["--change", "mirror", "--limit", "2"]).code, Some(0));
+    assert!(texts(&building).starts_with(&whole));
+    let other = robustness(&building, &["--change", "mirror", "--limit", "1"]);
+    assert_eq!(other.code, Some(1), "{other:?}");
+    assert!(other.err.contains("other settings: limit"), "{}", other.err);
+}
+
+#[test]
+fn what_means_nothing_is_refused_with_the_reason() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let ran = robustness(&building, &["--change", "camera_height_m=0.3", "--change", "mirror", "--limit", "1"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.err.contains("camera_height_m=0.3 means nothing here"), "{}", ran.err);
+    assert_eq!(results(&building)["refused"].as_array().unwrap().len(), 1);
+    let none = robustness(&building, &["--change", "blur_px=2", "--limit", "1"]);
+    assert_eq!(none.code, Some(1));
+    assert!(none.err.contains("labels are not read from pictures"), "{}", none.err);
+    let unknown = robustness(&building, &["--change", "mirorr"]);
+    assert!(unknown.code == Some(1) && unknown.err.contains("mirror"), "{}", unknown.err);
+    let list = building.wayword(&["robustness", "--list"]);
+    assert!(list.out.contains("default set: mirror, turn, remove, camera_height_m=0.3"), "{}", list.out);
+}
