@@ -2,6 +2,7 @@
 
 mod altered;
 mod camera;
+mod eye;
 mod labels;
 mod pictures;
 mod poses;
@@ -12,6 +13,7 @@ mod things;
 
 pub use altered::{Alter, Altered, Look};
 pub use camera::{CameraHeight, FieldOfView};
+pub use eye::{EyeOf, ScriptedEye};
 pub use pictures::PictureChange;
 pub use poses::HeadingNoise;
 pub use space::{Mirror, QuarterTurn};
