@@ -3,6 +3,7 @@
 mod altered;
 mod camera;
 mod edits;
+mod eye;
 mod labels;
 mod pictures;
 mod poses;
@@ -14,6 +15,7 @@ mod things;
 pub use altered::{Alter, Altered, Look};
 pub use camera::{CameraHeight, FieldOfView};
 pub use edits::{Labelled, Telling, Thing};
+pub use eye::{EyeOf, ScriptedEye};
 pub use pictures::PictureChange;
 pub use poses::HeadingNoise;
 pub use space::{Mirror, QuarterTurn};

@@ -1,0 +1,60 @@
+//! Sides that are guessed.
+
+use super::draws::Draws;
+use wayword_core::{DVec3, Frame, Gaze, Heading, Label, PlatformError, View};
+
+/// Gazes nearer than this are one, radians.
+const SAME_RAD: f64 = 1e-9;
+
+/// What an eye lists of a gaze that draws for each thing whether it lies left or right of the frame's heading. A thing that
+/// is drawn onto its other side is put where it would be if the world were mirrored at that heading. So it may be seen
+/// by another gaze, and what `look` shows there may be seen by this one.
+pub(super) fn guessed(
+    draws: &Draws<'_>,
+    from: &Frame,
+    gaze: Gaze,
+    known: &View,
+    look: impl Fn(Gaze) -> Result<View, PlatformError>,
+) -> Result<Vec<Label>, PlatformError> {
+    let axis = Axis { eye: known.pose.position, heading: from.pose.heading };
+    let other_gaze = Gaze { heading: axis.mirrored(gaze.heading), ..gaze };
+    let is_same = gaze.heading.turn_to(other_gaze.heading).abs() < SAME_RAD;
+    let other = if is_same { known.clone() } else { look(other_gaze)? };
+    let width_px = other.image.as_ref().map(|image| f64::from(image.width_px()));
+    let right_by_draw = |label: &Label| draws.uniform("side", label) < 0.5;
+    let kept = listed(known).filter(|label| axis.is_right(label.heading) == right_by_draw(label)).cloned();
+    let moved = listed(&other).filter(|label| axis.is_right(label.heading) != right_by_draw(label));
+    Ok(kept.chain(moved.map(|label| axis.mirrored_label(label, width_px))).collect())
+}
+
+fn listed(view: &View) -> impl Iterator<Item = &Label> {
+    view.ground_truth().into_iter().flat_map(|truth| &truth.labels)
+}
+
+/// The vertical plane through an eye along a heading.
+struct Axis {
+    eye: DVec3,
+    heading: Heading,
+}
+
+impl Axis {
+    fn mirrored(&self, heading: Heading) -> Heading {
+        self.heading.turned(-self.heading.turn_to(heading))
+    }
+
+    fn is_right(&self, heading: Heading) -> bool {
+        self.heading.turn_to(heading) > 0.0
+    }
+
+    /// A label on the other side of the plane, in a view of this width, pixels, that is mirrored too.
+    fn mirrored_label(&self, label: &Label, width_px: Option<f64>) -> Label {
+        let heading = self.mirrored(label.heading);
+        let moved = |position: DVec3| {
+            let level_m = (position - self.eye).truncate().length();
+            let level = self.eye + heading.direction() * level_m;
+            level.with_z(position.z)
+        };
+        let box_px = label.box_px.zip(width_px).map(|([x, y, width, height], all)| [all - x - width, y, width, height]);
+        Label { heading, position: label.position.map(moved), box_px, ..label.clone() }
+    }
+}
