@@ -59,7 +59,8 @@ mod tests {
 
     #[test]
     fn a_mirrored_text_says_the_other_side_and_keeps_its_case() {
-        let base = of("Turn left. Right of the leftmost bed, take the right-hand door and stop right next to the lamp.");
+        let base =
+            of("Turn left. Right of the leftmost bed, take the right-hand door and stop right next to the lamp.");
         let mirrored =
             of("Turn right. Left of the rightmost bed, take the left-hand door and stop right next to the lamp.");
         assert_eq!(mirror(base, mirrored), Outcome::Holds);

@@ -104,7 +104,8 @@ mod tests {
 
     #[test]
     fn the_way_back_has_the_turns_the_rooms_and_the_climbs_in_reverse_order() {
-        let back = "Leave the kitchen. Turn left in the hallway, go down the stairs, turn right and stop in the bedroom.";
+        let back =
+            "Leave the kitchen. Turn left in the hallway, go down the stairs, turn right and stop in the bedroom.";
         assert_eq!(judged(THERE, back), Outcome::Holds);
         assert_eq!(judged("Stop by the lamp.", "Stop by the bed."), Outcome::NotTold);
     }
