@@ -4,10 +4,10 @@ use super::{
     Outcome, Written,
     clauses::{clauses, lost},
 };
-use wayword_core::{Mention, MentionKind};
+use wayword_core::MentionKind;
 use wayword_language::{
-    lexicon::{agree, with_article},
-    text::tokens,
+    lexicon::agree,
+    text::{Token, tokens},
 };
 
 /// What is gone, or has come: its name, and the frames that see it or a namesake in one of the two worlds.
@@ -55,7 +55,8 @@ fn local(base: Written<'_>, changed: Written<'_>, thing: Gone<'_>) -> Option<Str
 
 /// Whether a text names a thing as one that is seen.
 fn tells(written: Written<'_>, name: &str) -> bool {
-    let is_thing = |mention: &&Mention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Target);
+    let is_thing =
+        |mention: &&wayword_core::Mention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Target);
     let mut said = written.mentions.iter().filter(is_thing);
     said.any(|mention| written.text.get(mention.span[0]..mention.span[1]).is_some_and(|words| agree(words, name)))
 }
@@ -65,27 +66,40 @@ fn tells(written: Written<'_>, name: &str) -> bool {
 #[must_use]
 pub fn material(base: Written<'_>, changed: Written<'_>, old: &str, new: &str) -> Outcome {
     let (before, after) = (tokens(base.text), tokens(changed.text));
-    let differs = || Outcome::Differs(format!("\"{}\" became \"{}\"", base.text, changed.text));
-    if before.len() != after.len() {
-        return differs();
-    }
+    let (old, new): (Vec<Token>, Vec<Token>) = (tokens(old), tokens(new));
+    let (mut was, mut is) = (before.as_slice(), after.as_slice());
     let mut is_told = false;
-    for (at, (was, is)) in before.iter().zip(&after).enumerate() {
-        let is_article = matches!(was.word.as_str(), "a" | "an")
-            && after.get(at + 1).is_some_and(|next| next.word == new)
-            && with_article(new) == format!("{} {new}", is.word);
-        if was.word == old && is.word == new {
+    while let ([one, ..], [other, ..]) = (was, is) {
+        if begins(was, &old) && begins(is, &new) {
             is_told = true;
-        } else if base.text[was.span[0]..was.span[1]] != changed.text[is.span[0]..is.span[1]] && !is_article {
-            return differs();
+            (was, is) = (&was[old.len()..], &is[new.len()..]);
+            continue;
         }
+        let takes_article = begins(&was[1..], &old) && begins(&is[1..], &new);
+        let is_article = takes_article && [one, other].iter().all(|token| matches!(token.word.as_str(), "a" | "an"));
+        if base.text[one.span[0]..one.span[1]] != changed.text[other.span[0]..other.span[1]] && !is_article {
+            break;
+        }
+        (was, is) = (&was[1..], &is[1..]);
     }
-    if is_told { Outcome::Holds } else { Outcome::NotTold }
+    match is_told {
+        _ if !was.is_empty() || !is.is_empty() => {
+            Outcome::Differs(format!("\"{}\" became \"{}\"", base.text, changed.text))
+        }
+        true => Outcome::Holds,
+        false => Outcome::NotTold,
+    }
+}
+
+/// Whether a text begins with some words.
+fn begins(text: &[Token], with: &[Token]) -> bool {
+    text.len() >= with.len() && text.iter().zip(with).all(|(a, b)| a.word == b.word)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wayword_core::Mention;
 
     /// A text with what it mentions: each name, its kind and its frame.
     fn mentions(text: &str, of: &[(&str, MentionKind, usize)]) -> Vec<Mention> {
@@ -148,6 +162,8 @@ mod tests {
         let of = |text: &'static str| Written { text, mentions: &[] };
         let base = of("Pass a red sofa and stop.");
         assert_eq!(material(base, of("Pass an orange sofa and stop."), "red", "orange"), Outcome::Holds);
+        let dark = of("Pass the dark red sofa.");
+        assert_eq!(material(dark, of("Pass the orange sofa."), "dark red", "orange"), Outcome::Holds);
         assert_eq!(material(of("Pass a sofa."), of("Pass a sofa."), "red", "orange"), Outcome::NotTold);
         for other in ["Pass a sofa and stop.", "Pass an orange sofa and wait.", "Pass the orange sofa and stop."] {
             assert!(matches!(material(base, of(other), "red", "orange"), Outcome::Differs(_)), "{other}");

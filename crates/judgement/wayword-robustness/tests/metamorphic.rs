@@ -1,0 +1,378 @@
+//! Metamorphic tests of the program's default roles (labels, and rules that write) on generated homes: the text of a changed
+//! world has to be just what the change makes of the text of the unchanged one.
+//!
+//! The follower that chooses among candidates in the program is left out. `WAYWORD_METAMORPHIC_PATHS` sets the number of paths,
+//! `WAYWORD_METAMORPHIC_SHOW` how many of the differences of each test are printed.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::print_stderr, reason = "shares and differences are for whoever runs the test")]
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::{Arc, Mutex},
+};
+use wayword_checks::{Evidence, Memory};
+use wayword_core::{
+    Frame, Gaze, Heading, Instruction, Label, Mention, MentionKind, ObjectId, Path, PathRequest, Platform,
+    PlatformError, SceneId, Style, View, ViewpointGraph, ViewpointId, path::Stop,
+};
+use wayword_house::{HouseOptions, HousePlatform};
+use wayword_language::{
+    lexicon::agree,
+    reading::{What, read},
+};
+use wayword_robustness::{
+    metamorphic::{Gone, Outcome, Written, add, material, mirror, remove, reverse, turn},
+    worlds::{Added, Alter, Altered, Mirror, QuarterTurn, Recoloured, Removed},
+};
+use wayword_synthesis::{
+    dialogue::{Mode, QUESTIONS, RulesAsker, RulesSummariser},
+    observe::{Observers, gazes_around, observe},
+    offline::{Labels, around, describe},
+    repair::{Order, Outcome as Item, Writers, write_and_repair},
+    style::{Profile, built_in},
+    walk::{FrameSelection, Walk},
+    writer::RulesWriter,
+};
+
+/// Views of a platform, each drawn once and without its picture, which nobody here looks at.
+#[derive(Clone)]
+struct Drawn {
+    platform: Arc<HousePlatform>,
+    views: Arc<Mutex<BTreeMap<(SceneId, [i64; 5]), View>>>,
+}
+
+impl Platform for Drawn {
+    fn name(&self) -> &'static str {
+        self.platform.name()
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.scenes()
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph(scene)
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        self.platform.sample_path(scene, request, seed)
+    }
+
+    /// A change of place and back again is off by the last bits, which would draw each view anew.
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let micro = |value: f64| (value * 1e6).round() as i64;
+        let turn = micro(Heading::NORTH.turn_to(gaze.heading).rem_euclid(std::f64::consts::TAU - 1e-7));
+        let [x, y, z] = from.pose.position.to_array().map(micro);
+        let key = (scene.clone(), [x, y, z, turn, micro(gaze.horizontal_fov_rad)]);
+        if let Some(view) = self.views.lock().unwrap().get(&key) {
+            return Ok(view.clone());
+        }
+        let view = self.platform.look(scene, from, gaze)?;
+        let view = View::new(view.pose, view.horizontal_fov_rad, None, view.ground_truth().cloned());
+        self.views.lock().unwrap().insert(key, view.clone());
+        Ok(view)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.look(scene, from, gaze)
+    }
+
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        self.platform.object_name(scene, near, object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.visible_from(scene, object)
+    }
+}
+
+/// A walk in some world, with all that a writer gets.
+struct Known {
+    walk: Walk,
+    memory: Memory,
+    evidence: Evidence,
+}
+
+const STYLES: [&str; 2] = ["r2r", "reverie"];
+const TESTS: [&str; 6] = ["mirror", "turn", "material", "reverse", "remove", "add"];
+
+/// As the program makes an item, but for the follower.
+fn know(platform: &dyn Platform, mut path: Path) -> Known {
+    let all_around = |frame: &Frame| -> Vec<View> {
+        let gazes = gazes_around(&path, frame);
+        gazes.iter().map(|gaze| platform.look_without_picture(&path.scene, frame, *gaze).unwrap()).collect()
+    };
+    let views: Vec<Vec<View>> = path.frames.iter().map(all_around).collect();
+    if let (Some(target), Some(last), Some(at_end)) = (&mut path.target, path.frames.last(), views.last()) {
+        let seen = around(last, at_end);
+        if seen.knows(last) {
+            describe(target, last, &seen);
+        }
+    }
+    let observations = observe(platform, &path, FrameSelection::Central, observers(&RulesAsker::default())).unwrap();
+    let walk = Walk::new(path, observations);
+    let evidence = Evidence::from_labels(&walk.path, &views).unwrap();
+    let memory = Memory::of(&evidence, &walk.path);
+    Known { walk, memory, evidence }
+}
+
+static LABELS: Labels = Labels { list_everything: false, calibration: None };
+
+fn observers(asker: &RulesAsker) -> Observers<'_> {
+    Observers {
+        asker,
+        answerer: &LABELS,
+        summariser: &RulesSummariser,
+        mode: Mode::Dialogue { questions: QUESTIONS },
+        prompts_hash: None,
+        detector: None,
+    }
+}
+
+fn write(known: &Known, (style, profile): &(Style, Profile)) -> Instruction {
+    let order = Order {
+        walk: &known.walk,
+        memory: &known.memory,
+        evidence: &known.evidence,
+        style,
+        profile,
+        style_hash: "",
+        seed: 7,
+        repairs: 8,
+        candidates: 4,
+        follower: None,
+        earlier: &[],
+        pictures: &[],
+    };
+    let writers = Writers { writer: &RulesWriter, finisher: None };
+    match write_and_repair(writers, observers(&RulesAsker::default()), order).unwrap() {
+        Item::Accepted(instruction) | Item::Rejected { last: Some(instruction), .. } => instruction,
+        Item::Rejected { last: None, reason } => {
+            unreachable!("{}: {reason}", known.walk.path.id)
+        }
+    }
+}
+
+fn said(instruction: &Instruction) -> Written<'_> {
+    Written { text: &instruction.text, mentions: &instruction.mentions }
+}
+
+/// The outcomes of each test and style.
+type Outcomes = BTreeMap<(&'static str, &'static str), Vec<Outcome>>;
+
+/// All tests on one path.
+struct Trial<'a> {
+    platform: &'a Drawn,
+    styles: &'a [(Style, Profile)],
+    outcomes: Outcomes,
+}
+
+impl Trial<'_> {
+    fn path(&mut self, path: &Path) {
+        let base = know(self.platform, path.clone());
+        let texts: Vec<Instruction> = self.styles.iter().map(|style| write(&base, style)).collect();
+        self.space(path, &texts, "mirror", Mirror, mirror);
+        self.space(path, &texts, "turn", QuarterTurn, turn);
+        self.back(path);
+        for (at, text) in texts.iter().enumerate() {
+            for (object, colour) in told_colours(text) {
+                self.recolour(path, &base, at, text, &object, &colour);
+            }
+            for name in told_things(text) {
+                self.remove(path, &base, at, text, &name);
+            }
+        }
+        self.add(path, &base, &texts);
+    }
+
+    fn judge(&mut self, test: &'static str, style: usize, outcome: Outcome) {
+        self.outcomes.entry((test, STYLES[style])).or_default().push(outcome);
+    }
+
+    fn space(
+        &mut self,
+        path: &Path,
+        texts: &[Instruction],
+        test: &'static str,
+        alter: impl Alter + Copy,
+        judge: fn(Written<'_>, Written<'_>) -> Outcome,
+    ) {
+        let changed = know(&Altered::new(self.platform.clone(), alter), alter.path_after(path.clone()));
+        for (at, text) in texts.iter().enumerate() {
+            let other = write(&changed, &self.styles[at]);
+            self.judge(test, at, judge(said(text), said(&other)));
+        }
+    }
+
+    /// Both ways without a target, which stands at one end only, and without a turn before the first step.
+    fn back(&mut self, path: &Path) {
+        let along = |reversed: bool| {
+            let mut stops: Vec<Stop> = path
+                .frames
+                .iter()
+                .map(|frame| Stop {
+                    position: frame.pose.position,
+                    viewpoint: frame.viewpoint.clone(),
+                    level: frame.level,
+                })
+                .collect();
+            if reversed {
+                stops.reverse();
+            }
+            Path { frames: Path::frames_along(stops, None), target: None, ..path.clone() }
+        };
+        let (there, back) = (know(self.platform, along(false)), know(self.platform, along(true)));
+        for at in 0..self.styles.len() {
+            let (there, back) = (write(&there, &self.styles[at]), write(&back, &self.styles[at]));
+            self.judge("reverse", at, reverse(said(&there), said(&back)));
+        }
+    }
+
+    fn recolour(&mut self, path: &Path, base: &Known, at: usize, text: &Instruction, name: &str, colour: &str) {
+        let things = || base.evidence.frames.iter().flat_map(|frame| &frame.things);
+        let is_it =
+            |thing: &&wayword_checks::SeenThing| agree(&thing.name, name) && thing.colour.as_deref() == Some(colour);
+        let objects: BTreeSet<ObjectId> = things().filter(is_it).filter_map(|thing| thing.object.clone()).collect();
+        let is_free = |new: &&str| things().all(|thing| thing.colour.as_deref() != Some(new));
+        let new = ["purple", "orange", "pink", "turquoise"].into_iter().find(is_free).unwrap();
+        let alter = Recoloured { objects, colour: new.to_owned() };
+        let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
+        let other = write(&changed, &self.styles[at]);
+        self.judge("material", at, material(said(text), said(&other), colour, new));
+    }
+
+    fn remove(&mut self, path: &Path, base: &Known, at: usize, text: &Instruction, name: &str) {
+        // The target is given with the path.
+        if path.target.as_ref().is_some_and(|target| agree(&target.name, name)) {
+            return;
+        }
+        let is_it = |thing: &&wayword_checks::SeenThing| agree(&thing.name, name);
+        let frames = base.evidence.frames.iter().enumerate();
+        let seen_from: Vec<usize> =
+            frames.filter(|(_, frame)| frame.things.iter().any(|t| is_it(&t))).map(|(at, _)| at).collect();
+        let things = base.evidence.frames.iter().flat_map(|frame| &frame.things);
+        let objects: BTreeSet<ObjectId> = things.filter(is_it).filter_map(|thing| thing.object.clone()).collect();
+        let alter = Removed { objects };
+        let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
+        let other = write(&changed, &self.styles[at]);
+        self.judge("remove", at, remove(said(text), said(&other), Gone { name, seen_from: &seen_from }));
+    }
+
+    /// Something that no home has, beside the middle of the path and beside its end.
+    fn add(&mut self, path: &Path, base: &Known, texts: &[Instruction]) {
+        let last = path.frames.len() - 1;
+        let things = || base.evidence.frames.iter().flat_map(|frame| &frame.things);
+        let is_new = |name: &&str| things().all(|thing| !agree(&thing.name, name));
+        let Some(name) = ["piano", "fireplace", "statue"].into_iter().find(is_new) else { return };
+        for by in BTreeSet::from([last / 2, last]) {
+            let seen_from: Vec<usize> = (by.saturating_sub(1)..=(by + 1).min(last)).collect();
+            let frame = &path.frames[by];
+            let beside = frame.pose.heading.turned(0.7).direction() * 1.2;
+            let object = Label {
+                object: ObjectId::new("added").unwrap(),
+                name: name.to_owned(),
+                heading: Heading::NORTH,
+                elevation_rad: 0.0,
+                box_px: None,
+                distance_m: None,
+                position: Some(frame.pose.position + beside),
+                colour: None,
+            };
+            let frames = seen_from.iter().map(|at| path.frames[*at].clone()).collect();
+            let alter = Added { scene: path.scene.clone(), object, seen_from: frames };
+            let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
+            for (at, text) in texts.iter().enumerate() {
+                let other = write(&changed, &self.styles[at]);
+                self.judge("add", at, add(said(text), said(&other), Gone { name, seen_from: &seen_from }));
+            }
+        }
+    }
+}
+
+/// The things on the way that a text names.
+fn told_things(text: &Instruction) -> BTreeSet<String> {
+    let is_thing = |mention: &&Mention| mention.kind == MentionKind::Landmark;
+    text.mentions.iter().filter(is_thing).map(|mention| name_in(text, mention.span)).collect()
+}
+
+/// The things of a text whose colour it names, with the colour.
+fn told_colours(text: &Instruction) -> BTreeSet<(String, String)> {
+    let events = read(&text.text, &BTreeSet::new()).events;
+    let coloured = events.into_iter().filter_map(|event| match event.what {
+        What::Place(place) if place.is_thing => Some((place.name.clone(), place.colour?)),
+        _ => None,
+    });
+    coloured.collect()
+}
+
+fn name_in(text: &Instruction, span: [usize; 2]) -> String {
+    text.text[span[0]..span[1]].to_lowercase()
+}
+
+fn outcomes(paths: usize) -> Outcomes {
+    let styles: Vec<(Style, Profile)> = STYLES
+        .iter()
+        .map(|name| {
+            let style = built_in(name).unwrap();
+            let profile = Profile::of(&style);
+            (style, profile)
+        })
+        .collect();
+    let of_thread = |first: usize, step: usize| {
+        let options = HouseOptions { width_px: 320, height_px: 240, ..HouseOptions::default() };
+        let mut all = Outcomes::new();
+        for number in (first..paths).step_by(step) {
+            let platform = Drawn { platform: Arc::new(HousePlatform::new(options.clone())), views: Arc::default() };
+            let scene = HousePlatform::scene_of(number as u64).unwrap();
+            let Ok(path) = platform.sample_path(&scene, &PathRequest::default(), number as u64) else { continue };
+            let mut trial = Trial { platform: &platform, styles: &styles, outcomes: Outcomes::new() };
+            trial.path(&path);
+            trial.outcomes.into_iter().for_each(|(key, found)| all.entry(key).or_default().extend(found));
+        }
+        all
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        let running: Vec<_> = (0..threads).map(|first| scope.spawn(move || of_thread(first, threads))).collect();
+        let mut all = Outcomes::new();
+        for thread in running {
+            thread.join().unwrap().into_iter().for_each(|(key, found)| all.entry(key).or_default().extend(found));
+        }
+        all
+    })
+}
+
+/// How many paths the tests are made of by default.
+const PATHS: usize = 12;
+
+/// Each test holds in at least this share of the texts that tell what was changed.
+const LEAST: [(&str, f64); 6] =
+    [("mirror", 0.0), ("turn", 0.0), ("material", 0.0), ("reverse", 0.0), ("remove", 0.0), ("add", 0.0)];
+
+#[test]
+fn texts_of_changed_worlds_are_what_the_change_makes_of_them() {
+    let number = |name: &str, usual: usize| std::env::var(name).map_or(usual, |value| value.parse().unwrap());
+    let all = outcomes(number("WAYWORD_METAMORPHIC_PATHS", PATHS));
+    let show = number("WAYWORD_METAMORPHIC_SHOW", 0);
+    let mut short: Vec<String> = Vec::new();
+    for test in TESTS {
+        for style in STYLES {
+            let found = all.get(&(test, style)).map_or(&[][..], Vec::as_slice);
+            let told = found.iter().filter(|outcome| **outcome != Outcome::NotTold).count();
+            let holds = found.iter().filter(|outcome| **outcome == Outcome::Holds).count();
+            let share = if told == 0 { 1.0 } else { holds as f64 / told as f64 };
+            eprintln!("{test:9} {style:8} {holds:4} of {told:4} told ({:.1} %), {} tried", share * 100.0, found.len());
+            let differs = found.iter().filter_map(|outcome| match outcome {
+                Outcome::Differs(why) => Some(why),
+                _ => None,
+            });
+            differs.take(show).for_each(|why| eprintln!("    {why}"));
+            let least = LEAST.iter().find(|(name, _)| *name == test).map_or(1.0, |(_, least)| *least);
+            if share < least {
+                short.push(format!("{test} in {style}: {share:.3}, not {least}"));
+            }
+        }
+    }
+    assert!(short.is_empty(), "{short:?}");
+}
