@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use wayword_core::{
     DVec3, Frame, GroundTruth, Heading, Label, Mention, MentionKind, ObjectId, Path, View, seed::derive,
 };
-use wayword_language::lexicon::{agree, same_colour};
+use wayword_language::lexicon::{Class, agree, same_colour, thing};
 
 /// What is added: things that people name as landmarks. The first that is not seen along the path is taken.
 const ADDED: [&str; 5] = ["piano", "fireplace", "bookshelf", "armchair", "wardrobe"];
@@ -69,7 +69,7 @@ impl Labelled {
             let before = text[..mention.span[0]].split_whitespace().next_back();
             Some(self.thing(words, &label.name, before))
         });
-        told.filter(|thing| !is_target(&thing.name)).collect()
+        told.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
     }
 
     /// A thing of that name. `before` is the word before its name: its colour, where it is one.
@@ -136,6 +136,12 @@ impl Labelled {
         let objects = BTreeSet::from([object]);
         Some((Thing { words: name.clone(), name, objects, seen_from, colour: None }, added))
     }
+}
+
+/// Whether a thing can be taken away: doors and stairs stay where the way leads through them.
+fn can_go(name: &str) -> bool {
+    let is_built_in = |class: Class| matches!(class, Class::Door | Class::Stairs | Class::Fabric);
+    thing(name).is_none_or(|thing| !is_built_in(thing.class))
 }
 
 /// One of so many, by the seed and the path's name; `None` of none.

@@ -13,6 +13,9 @@ Examples:
   wayword robustness --list
       Show all changes, with their units and what the default set is.
   wayword robustness --run runs/houses --change mirror --change camera_height_m=0.3,0.88,1.6 --out runs/robust
+  wayword robustness --run runs/houses --eye recall=0.9,mistakes=0.05 --change blur_px=2,8,20 --out runs/blurred
+      Pictures change here, so a scripted eye looks; its recall falls with the dose by a stated formula.
+  wayword robustness --run runs/houses --eye guesses-sides --change mirror --out runs/guesses
 
 Give the same command again to continue. With more --change, only these are added. docs/ROBUSTNESS.md says what the figures mean.")]
 pub struct Robustness {
@@ -28,6 +31,10 @@ pub struct Robustness {
     /// Show all changes and the default set, and do nothing.
     #[arg(long)]
     pub list: bool,
+    /// A scripted eye sees instead of labels: recall=SHARE, mistakes=SHARE, falls=SHARE, rises=SHARE, guesses-sides, joined by
+    /// commas. It answers from the labels of the same pose; its recall falls and its mistakes rise with the dose.
+    #[arg(long, value_name = "EYE")]
+    pub eye: Option<String>,
     /// Use only the first N paths of the run.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,

@@ -52,6 +52,14 @@ impl Arm {
         }
     }
 
+    /// How strong its change is for a scripted eye, from 0 to 1.
+    pub(super) fn strength(&self) -> f64 {
+        match self {
+            Self::Changed(change) => change.strength().unwrap_or(0.0),
+            _ => 0.0,
+        }
+    }
+
     /// Whether one thing of the world is changed, another one for each text.
     pub(super) fn is_edit(&self) -> bool {
         matches!(self, Self::Changed(Change::Whole(Whole::Remove | Whole::Add | Whole::Material)))

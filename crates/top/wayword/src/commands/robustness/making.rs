@@ -22,7 +22,7 @@ use std::{collections::BTreeMap, slice};
 use wayword_core::{Path, Platform, seed::derive};
 use wayword_robustness::{
     Change, Whole,
-    worlds::{Altered, Labelled, Mirror, QuarterTurn, Telling, Thing},
+    worlds::{Altered, EyeOf, Labelled, Mirror, QuarterTurn, ScriptedEye, Telling, Thing},
 };
 use wayword_synthesis::repair::Outcome;
 
@@ -35,6 +35,8 @@ pub(super) struct Crew<'a> {
     pub(super) team: &'a Team,
     /// The same, asked once more.
     pub(super) again: &'a Team,
+    /// What sees in the place of labels, if anything does.
+    pub(super) eye: Option<EyeOf>,
     pub(super) seed: u64,
     /// Views of one path that are talked about at a time.
     pub(super) threads: usize,
@@ -107,6 +109,8 @@ impl Crew<'_> {
         path: &Path,
         styles: &[Measured],
     ) -> Result<Vec<Told>, Error> {
+        let eyed = self.eye.map(|eye| ScriptedEye::new(platform, platform, eye, self.seed).at(within.arm.strength()));
+        let platform = eyed.as_ref().map_or(platform, |eyed| eyed as &dyn Platform);
         let again = within.arm == &Arm::Again;
         let seed = self.base.settings.seed;
         let seed = if again { derive(seed, &["robustness", "again"]) } else { seed };

@@ -2,6 +2,7 @@
 
 mod arm;
 mod base;
+mod eye;
 mod figures;
 mod making;
 mod other;
@@ -42,7 +43,7 @@ use std::{
     path::{Path as FilePath, PathBuf},
 };
 use wayword_core::{Path, Platform};
-use wayword_robustness::{Change, Sees, Setting, ratio::Drawing};
+use wayword_robustness::{Change, Sees, Setting, ratio::Drawing, worlds::EyeOf};
 
 /// Names of the files in the folder, beside `config.toml`.
 mod file {
@@ -63,6 +64,9 @@ struct Kept {
     run: PathBuf,
     /// Hash of its paths.
     walks: String,
+    /// The scripted eye.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    eye: Option<String>,
     /// Only this many paths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
@@ -80,10 +84,19 @@ pub(super) fn run(args: &Robustness, output: &Output) -> Result<Exit, Error> {
         return Err(Error::usage("a run and a folder are needed", "give --run DIR and --out DIR"));
     };
     let base = Base::read(folder, args.limit)?;
+    let eye = args.eye.as_deref().map(eye::parse).transpose()?;
+    if eye.is_some() && base.settings.roles.see != LABELS {
+        let problem = format!(
+            "--eye: in {} {} sees, and the eye would take its place",
+            folder.display(),
+            base.settings.roles.see
+        );
+        return Err(Error::usage(problem, "give a run in which labels see"));
+    }
     let job = job(args, &base.settings)?;
     Calls::ready(&job, output)?;
     let platform = platforms::open(&job.settings)?;
-    let (changes, refused) = sorted_out(changes, &setting(&base, platform.as_ref())?);
+    let (changes, refused) = sorted_out(changes, &setting(&base, platform.as_ref(), eye.is_some())?);
     for Refused { reason, .. } in &refused {
         output.say(format_args!("not made: {reason}"));
     }
@@ -96,12 +109,12 @@ pub(super) fn run(args: &Robustness, output: &Output) -> Result<Exit, Error> {
     if calls.is_some() {
         run::keep_id(out, &id)?;
     }
-    let failed = make(args, &base, &changes, (platform.as_ref(), calls.as_ref()), output)?;
+    let failed = make(args, &base, &changes, eye, (platform.as_ref(), calls.as_ref()), output)?;
     if let Some(calls) = &calls {
         calls.record()?;
         output.say(format_args!("models: {}", calls.spent()));
     }
-    let results = found(args, &base, &changes, refused, &read(out)?)?;
+    let results = found(args, &base, &changes, eye, refused, &read(out)?);
     let json = serde_json::to_string_pretty(&results)
         .map_err(|error| Error::usage(format!("the results cannot be written: {error}"), "report this as a bug"))?;
     run::write_whole(&out.join(file::RESULTS), &json)?;
@@ -135,12 +148,16 @@ fn job(args: &Robustness, settings: &Settings) -> Result<Job, Error> {
 }
 
 /// Where the changes are to be made.
-fn setting<'a>(base: &'a Base, platform: &dyn Platform) -> Result<Setting<'a>, Error> {
+fn setting<'a>(base: &'a Base, platform: &dyn Platform, has_eye: bool) -> Result<Setting<'a>, Error> {
     let name = base.settings.platform.as_str();
     let graph = name == "matterport" || name == "process" && !platform.graph(&base.paths[0].scene)?.is_empty();
     Ok(Setting {
         platform: name,
-        sees: if base.settings.roles.see == LABELS { Sees::Labels } else { Sees::Pictures },
+        sees: match base.settings.roles.see.as_str() {
+            _ if has_eye => Sees::Eye,
+            LABELS => Sees::Labels,
+            _ => Sees::Pictures,
+        },
         has_poses: base.paths.iter().all(|path| path.motion.is_known()),
         draws: !matches!(name, "matterport" | "recording"),
         graph,
@@ -166,6 +183,7 @@ fn begin(args: &Robustness, base: &Base, out: &FilePath) -> Result<run::Held, Er
     let kept = Kept {
         run: folder.canonicalize().map_err(Error::io(folder, "find"))?,
         walks: hash_of_file(&folder.join(run::file::WALKS))?,
+        eye: args.eye.clone(),
         limit: args.limit,
         seed: args.seed,
     };
@@ -180,6 +198,7 @@ fn make(
     args: &Robustness,
     base: &Base,
     changes: &[Change],
+    eye: Option<EyeOf>,
     (platform, calls): (&dyn Platform, Option<&Calls>),
     output: &Output,
 ) -> Result<usize, Error> {
@@ -194,7 +213,7 @@ fn make(
     };
     let (team, again) = (team(0)?, team(1)?);
     let threads = calls.map_or(1, |calls| calls.views_at_once(base.paths.len()));
-    let crew = Crew { base, platform: world, team: &team, again: &again, seed: args.seed, threads };
+    let crew = Crew { base, platform: world, team: &team, again: &again, eye, seed: args.seed, threads };
     let mut journal = Journal::open(&out.join(file::TEXTS), Line::key_of)?;
     let _graceful = interrupt::finish_first(calls);
     let workers = calls.map_or_else(cores, Calls::workers);
@@ -239,7 +258,7 @@ fn read(out: &FilePath) -> Result<Lines, Error> {
     let mut all = Lines::new();
     lines::each(&out.join(file::TEXTS), |line| {
         let line: Line = line.parse()?;
-        all.entry(line.arm.clone()).or_insert_with(BTreeMap::new).insert(line.path.id.clone(), line);
+        all.entry(line.arm.clone()).or_default().insert(line.path.id.clone(), line);
         Ok(())
     })?;
     Ok(all)
@@ -250,9 +269,10 @@ fn found(
     args: &Robustness,
     base: &Base,
     changes: &[Change],
+    eye: Option<EyeOf>,
     refused: Vec<Refused>,
     lines: &Lines,
-) -> Result<Results, Error> {
+) -> Results {
     let drawing = Drawing { resamples: args.resamples as usize, level: LEVEL, seed: args.seed };
     let unchanged = lines.get(&Arm::Unchanged.id());
     let texts = unchanged.into_iter().flat_map(BTreeMap::values).flat_map(|line| {
@@ -260,9 +280,10 @@ fn found(
     });
     let roles = &base.settings.roles;
     let styles = base.styles.iter().map(|style| figures::of_style(base, &style.style.name, changes, lines, drawing));
-    Ok(Results {
+    let sees = eye.map_or_else(|| format!("{} sees", roles.see), |eye| eye::said(&eye));
+    Results {
         platform: base.settings.platform.clone(),
-        roles: format!("{} sees, and {} writes", roles.see, roles.write),
+        roles: format!("{sees}; {} writes", roles.write),
         paths: base.paths.len(),
         scenes: base.paths.iter().map(|path| &path.scene).collect::<BTreeSet<_>>().len(),
         again: base.again(texts),
@@ -270,5 +291,5 @@ fn found(
         level: LEVEL,
         styles: styles.collect(),
         refused,
-    })
+    }
 }
