@@ -14,16 +14,16 @@ const MOST_ROLL_DEG: f64 = 45.0;
 /// The widest level view that is asked for, radians: the widest that the platforms draw.
 const WIDEST_RAD: f64 = 2.6;
 
-/// Height over width of the pictures of all platforms that draw. It decides how wide a view has to be before the picture is
-/// known; where a picture has another shape, its corners may be grey.
+/// Height over width of the pictures of all platforms that draw. It decides how wide a view has to be before the
+/// picture is known; where a picture has another shape, its corners may be grey.
 const ASPECT: f64 = 0.75;
 
-/// A tilted pinhole camera. Its picture is made of a wider level view, by the homography of the rotation, so it is exact but
-/// for its sharpness. What the wider view does not reach is grey.
+/// A tilted pinhole camera. Its picture is made of a wider level view, by the homography of the rotation, so it is
+/// exact but for its sharpness. What the wider view does not reach is grey.
 ///
 /// A label stays where the centre of its box lies within the tilted view's width, and part of the box in the picture;
-/// without a box, the direction counts for the height too. The wider view shows things smaller, so a thing that is barely
-/// large enough for a label may lose it. A tilted view has no depth.
+/// without a box, the direction counts for the height too. The wider view shows things smaller, so a thing that is
+/// barely large enough for a label may lose it. A tilted view has no depth.
 ///
 /// It goes inside a [`FieldOfView`](super::FieldOfView).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,11 +44,12 @@ pub enum TiltError {
 }
 
 impl Tilt {
-    /// A camera that looks up by `pitch_deg` degrees and is then rolled clockwise by `roll_deg` degrees around the direction
-    /// in which it looks.
+    /// A camera that looks up by `pitch_deg` degrees and is then rolled clockwise by `roll_deg` degrees around the
+    /// direction in which it looks.
     ///
     /// # Errors
-    /// When the pitch is more than 30 degrees or the roll more than 45, in either direction, or one is no finite number.
+    /// When the pitch is more than 30 degrees or the roll more than 45, in either direction, or one is no finite
+    /// number.
     pub fn new(pitch_deg: f64, roll_deg: f64) -> Result<Self, TiltError> {
         let within = |deg: f64, most: f64| (-most..=most).contains(&deg);
         if !within(pitch_deg, MOST_PITCH_DEG) {

@@ -5,8 +5,8 @@ use wayword_core::{DMat3, DVec3, Heading, Image, Label};
 /// What a pixel is that the level picture does not reach.
 pub(super) const GREY: u8 = 128;
 
-/// Two pinhole cameras at one place, with pictures of one size. Pixel coordinates are continuous, with (0, 0) at the top left
-/// corner; camera frames are right, up, backward.
+/// Two pinhole cameras at one place, with pictures of one size. Pixel coordinates are continuous, with (0, 0) at the
+/// top left corner; camera frames are right, up, backward.
 pub(super) struct Warp {
     pub(super) level_from_tilted: DMat3,
     /// Tangent of half the horizontal field of view of the level picture.
@@ -25,7 +25,8 @@ impl Warp {
         ((0.0..=width).contains(&x) && (0.0..=height).contains(&y)).then_some([x, y])
     }
 
-    /// Where a pixel position of the level picture lies in the tilted one, which may be outside it; `None` behind the camera.
+    /// Where a pixel position of the level picture lies in the tilted one, which may be outside it; `None` behind the
+    /// camera.
     pub(super) fn tilted_px(&self, level_px: [f64; 2]) -> Option<[f64; 2]> {
         self.px(self.tilted_from_level() * self.ray(level_px, self.level_tan), self.tilted_tan)
     }
