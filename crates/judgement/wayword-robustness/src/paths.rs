@@ -18,8 +18,8 @@ pub struct ChangedPath {
     pub base_frame_of: Vec<usize>,
 }
 
-/// The path walked from its end to its start. It begins along its first hop and has no target, because that was at the other
-/// end. Of an unknown motion only the order changes.
+/// The path walked from its end to its start. It begins along its first hop and has no target, because that was at the
+/// other end. Of an unknown motion only the order changes.
 #[must_use]
 pub fn reversed(path: &Path) -> ChangedPath {
     let base_frame_of: Vec<usize> = (0..path.frames.len()).rev().collect();
@@ -31,9 +31,9 @@ pub fn reversed(path: &Path) -> ChangedPath {
     ChangedPath { path: Path { frames, target: None, ..path.clone() }, base_frame_of }
 }
 
-/// The path with frames at equal distances of at most `spacing_m` metres along its polyline, both ends kept. A frame that
-/// falls on one of the path keeps its viewpoint; its level is that of the nearest one. A path of unknown motion, or with one
-/// frame, stays as it is.
+/// The path with frames at equal distances of at most `spacing_m` metres along its polyline, both ends kept. A frame
+/// that falls on one of the path keeps its viewpoint; its level is that of the nearest one. A path of unknown motion,
+/// or with one frame, stays as it is.
 #[must_use]
 pub fn spaced(path: &Path, spacing_m: f64) -> ChangedPath {
     let at_m = along_m(path);
@@ -48,8 +48,8 @@ pub fn spaced(path: &Path, spacing_m: f64) -> ChangedPath {
     rejoined(path, stops.collect(), base_frame_of)
 }
 
-/// The path with only those of its frames that are at least `spacing_m` metres along it from the one kept before, both ends
-/// kept: for platforms that cannot be seen between frames.
+/// The path with only those of its frames that are at least `spacing_m` metres along it from the one kept before, both
+/// ends kept: for platforms that cannot be seen between frames.
 #[must_use]
 pub fn thinned(path: &Path, spacing_m: f64) -> ChangedPath {
     let at_m = along_m(path);
@@ -64,8 +64,8 @@ pub fn thinned(path: &Path, spacing_m: f64) -> ChangedPath {
     without_others(path, kept)
 }
 
-/// The path with each frame between its first and its last dropped with a chance of `percent` per cent. Each frame has one
-/// draw by the seed and the path's id, so that one that is dropped at 10 % is also dropped at 30 %.
+/// The path with each frame between its first and its last dropped with a chance of `percent` per cent. Each frame has
+/// one draw by the seed and the path's id, so that one that is dropped at 10 % is also dropped at 30 %.
 #[must_use]
 pub fn dropped(path: &Path, percent: f64, seed: u64) -> ChangedPath {
     let last = path.frames.len().saturating_sub(1);
@@ -76,7 +76,8 @@ pub fn dropped(path: &Path, percent: f64, seed: u64) -> ChangedPath {
     without_others(path, (0..path.frames.len()).filter(is_kept).collect())
 }
 
-/// The path with its start heading turned by `turn_deg` degrees, positive right. A path of unknown motion stays as it is.
+/// The path with its start heading turned by `turn_deg` degrees, positive right. A path of unknown motion stays as it
+/// is.
 #[must_use]
 pub fn start_heading(path: &Path, turn_deg: f64) -> ChangedPath {
     let mut changed = unchanged(path);

@@ -142,7 +142,9 @@ impl Home {
     /// Refuses poses outside the house.
     pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
-        if eye.is_finite() && self.room_name(eye).is_some() {
+        // A low camera is within its room, and has no room at a person's feet.
+        let is_within = || self.scene.house.room_at(eye.x, eye.y, eye.z).is_some();
+        if eye.is_finite() && (self.room_name(eye).is_some() || is_within()) {
             return Ok(());
         }
         Err(PlatformError::nowhere(&self.id, frame))

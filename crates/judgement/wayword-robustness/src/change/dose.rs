@@ -92,7 +92,8 @@ impl Dose {
         self.row().unit
     }
 
-    /// The value at which nothing changes; `None` where a path has a value of its own, as with the distance between frames.
+    /// The value at which nothing changes; `None` where a path has a value of its own, as with the distance between
+    /// frames.
     #[must_use]
     pub fn unchanged(self) -> Option<f64> {
         self.row().unchanged

@@ -21,7 +21,7 @@ const PLATFORM: &str = "platform";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Change {
-    /// The same poses on another platform: NAME[:DATA][@ADDRESS], as it was written.
+    /// The same poses on another platform: `NAME[:DATA][@ADDRESS]`, as it was written.
     Platform(String),
     /// A change that is made or not.
     Whole(Whole),
@@ -36,8 +36,8 @@ impl Change {
         [PLATFORM].into_iter().chain(whole).chain(Dose::ALL.into_iter().map(Dose::name))
     }
 
-    /// The changes that are made where nobody says which: mirror, turn, remove, three heights of the camera, three fields
-    /// of view, three distances between frames, and three heading noises.
+    /// The changes that are made where nobody says which: mirror, turn, remove, three heights of the camera, three
+    /// fields of view, three distances between frames, and three heading noises.
     #[must_use]
     pub fn default_set() -> Vec<Self> {
         let doses = [
@@ -76,14 +76,15 @@ impl Change {
         self.kind().map(Dose::unit)
     }
 
-    /// The dose at which nothing changes; `None` for a change without a dose, and where no dose leaves every path as it is.
+    /// The dose at which nothing changes; `None` for a change without a dose, and where no dose leaves every path as it
+    /// is.
     #[must_use]
     pub fn unchanged(&self) -> Option<f64> {
         self.kind().and_then(Dose::unchanged)
     }
 
-    /// How far the dose is from [`unchanged`](Self::unchanged), as a share of the way to the end of its range on the same
-    /// side: 0 to 1.
+    /// How far the dose is from [`unchanged`](Self::unchanged), as a share of the way to the end of its range on the
+    /// same side: 0 to 1.
     #[must_use]
     pub fn strength(&self) -> Option<f64> {
         let Self::By(dose, value) = self else { return None };

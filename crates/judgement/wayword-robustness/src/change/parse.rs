@@ -68,8 +68,8 @@ pub enum ChangeError {
 }
 
 impl Change {
-    /// Reads one or more changes of one name: `mirror`, `platform=NAME[:DATA][@ADDRESS]`, `camera_height_m=0.3,0.88,1.6`.
-    /// Blanks around names and numbers do not count.
+    /// Reads one or more changes of one name: `mirror`, `platform=NAME[:DATA][@ADDRESS]`,
+    /// `camera_height_m=0.3,0.88,1.6`. Blanks around names and numbers do not count.
     ///
     /// # Errors
     /// When there is no such change, or a number is missing, superfluous, no number, out of range or given twice.

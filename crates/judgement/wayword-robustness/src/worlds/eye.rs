@@ -32,17 +32,17 @@ pub struct EyeOf {
 
 /// A platform whose labels are what a scripted eye answers.
 ///
-/// Pictures, graph, paths and poses are those of `pictures`, any platform. The eye gets the labels and the room of `oracle`,
-/// which knows what is at the same pose. Of each label it draws whether it is seen, whether it is called by another name, and
-/// where the eye guesses sides, whether it lies left or right. `lists_objects` stays the oracle's: the eye does not know
-/// what it missed.
+/// Pictures, graph, paths and poses are those of `pictures`, any platform. The eye gets the labels and the room of
+/// `oracle`, which knows what is at the same pose. Of each label it draws whether it is seen, whether it is called by
+/// another name, and where the eye guesses sides, whether it lies left or right. `lists_objects` stays the oracle's:
+/// the eye does not know what it missed.
 ///
-/// The draws are by the seed, the scene, the object and the distance over the ground, which differs from frame to frame. None
-/// of that changes where the world is mirrored or turned, the eye raised or its view widened. A label is seen when its
-/// number is below the recall, so an eye of lower recall sees a subset.
+/// The draws are by the seed, the scene, the object and the distance over the ground, which differs from frame to
+/// frame. None of that changes where the world is mirrored or turned, the eye raised or its view widened. A label is
+/// seen when its number is below the recall, so an eye of lower recall sees a subset.
 ///
-/// A change of the world goes inside, around both `pictures` and `oracle`. Around the eye, a mirror would mirror its guesses
-/// too, and so hide that they are guesses.
+/// A change of the world goes inside, around both `pictures` and `oracle`. Around the eye, a mirror would mirror its
+/// guesses too, and so hide that they are guesses.
 #[derive(Debug, Clone)]
 pub struct ScriptedEye<P, O> {
     pictures: P,

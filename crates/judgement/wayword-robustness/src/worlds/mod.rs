@@ -11,6 +11,7 @@ mod space;
 #[cfg(test)]
 mod testing;
 mod things;
+mod tilt;
 
 pub use altered::{Alter, Altered, Look};
 pub use camera::{CameraHeight, FieldOfView};
@@ -20,3 +21,4 @@ pub use pictures::PictureChange;
 pub use poses::HeadingNoise;
 pub use space::{Mirror, QuarterTurn};
 pub use things::{Added, Recoloured, Removed};
+pub use tilt::{Tilt, TiltError};

@@ -8,8 +8,9 @@ use super::{
 use crate::draws::normal;
 use wayword_core::{DVec3, Frame, Gaze, Label, Motion, Path, PlatformError, Pose, SceneId, View};
 
-/// The log's headings are off by a gaussian error that is drawn for each place. What is seen is seen from the true heading,
-/// and written down under the wrong one: a thing ahead of the camera stays ahead of it, and lies somewhere else in the world.
+/// The log's headings are off by a gaussian error that is drawn for each place. What is seen is seen from the true
+/// heading, and written down under the wrong one: a thing ahead of the camera stays ahead of it, and lies somewhere
+/// else in the world.
 ///
 /// "Before" is the truth, "after" the log. An error is drawn by the seed, the scene and the frame's
 /// [`place`](Frame::place), so the errors of two values of `deg` with one seed are proportional.
@@ -28,8 +29,8 @@ impl HeadingNoise {
         self.deg.to_radians() * normal(self.seed, &["heading noise", scene.as_str(), &keyed(frame)])
     }
 
-    /// The path as the log has it, made of the true one. Positions stay as they are; of the target it forgets what depends on
-    /// the pose of somebody who arrives. A path of unknown motion stays as it is.
+    /// The path as the log has it, made of the true one. Positions stay as they are; of the target it forgets what
+    /// depends on the pose of somebody who arrives. A path of unknown motion stays as it is.
     #[must_use]
     pub fn logged(&self, truth: &Path) -> Path {
         let mut log = truth.clone();

@@ -99,3 +99,6 @@ fn mirrored(image: &Image) -> Image {
     }
     Image::new(image.width_px(), image.height_px(), rgb).unwrap_or_else(|_| image.clone())
 }
+
+#[cfg(test)]
+mod tests;

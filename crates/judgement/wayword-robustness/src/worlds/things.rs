@@ -1,5 +1,5 @@
-//! Worlds with a thing less, a thing more, or a thing of another colour, by their labels. Pictures stay as they are, so these
-//! changes are only for who reads labels.
+//! Worlds with a thing less, a thing more, or a thing of another colour, by their labels. Pictures stay as they are, so
+//! these changes are only for who reads labels.
 
 use super::{Alter, altered::Look, labels::with_labels};
 use std::collections::BTreeSet;

@@ -7,7 +7,8 @@ use wayword_core::{Label, SceneId, ViewpointId};
 const WRONG_NAMES: [&str; 12] =
     ["chair", "table", "lamp", "bed", "sofa", "cabinet", "bookshelf", "plant", "mirror", "picture", "rug", "stool"];
 
-/// By what the numbers of one look are drawn. The name of the viewpoint counts where the distance of a label is not known.
+/// By what the numbers of one look are drawn. The name of the viewpoint counts where the distance of a label is not
+/// known.
 pub(super) struct Draws<'a> {
     pub(super) seed: u64,
     pub(super) scene: &'a SceneId,
@@ -15,7 +16,8 @@ pub(super) struct Draws<'a> {
 }
 
 impl Draws<'_> {
-    /// A label's number for one purpose, in [0, 1). It is the same wherever the label is the same thing at the same distance.
+    /// A label's number for one purpose, in [0, 1). It is the same wherever the label is the same thing at the same
+    /// distance.
     pub(super) fn uniform(&self, purpose: &str, label: &Label) -> f64 {
         let away = self.away(label);
         uniform(self.seed, &["scripted eye", purpose, self.scene.as_str(), label.object.as_str(), &away])

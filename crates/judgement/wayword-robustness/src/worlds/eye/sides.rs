@@ -6,9 +6,9 @@ use wayword_core::{DVec3, Frame, Gaze, Heading, Label, PlatformError, View};
 /// Gazes nearer than this are one, radians.
 const SAME_RAD: f64 = 1e-9;
 
-/// What an eye lists of a gaze that draws for each thing whether it lies left or right of the frame's heading. A thing that
-/// is drawn onto its other side is put where it would be if the world were mirrored at that heading. So it may be seen
-/// by another gaze, and what `look` shows there may be seen by this one.
+/// What an eye lists of a gaze that draws for each thing whether it lies left or right of the frame's heading. A thing
+/// that is drawn onto its other side is put where it would be if the world were mirrored at that heading. So it may be
+/// seen by another gaze, and what `look` shows there may be seen by this one.
 pub(super) fn guessed(
     draws: &Draws<'_>,
     from: &Frame,

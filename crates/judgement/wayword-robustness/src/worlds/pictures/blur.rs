@@ -3,8 +3,8 @@
 use super::light::{linear_from_srgb, srgb_from_linear};
 use wayword_core::{Image, image::WrongPixelCount};
 
-/// A picture blurred by a gaussian, which is cut off at three standard deviations. Beyond its edge the picture goes on with
-/// the pixels of the edge.
+/// A picture blurred by a gaussian, which is cut off at three standard deviations. Beyond its edge the picture goes on
+/// with the pixels of the edge.
 pub(super) fn blurred(image: &Image, sigma_px: f64) -> Result<Image, WrongPixelCount> {
     let kernel = kernel(sigma_px);
     let [width, height] = [image.width_px(), image.height_px()].map(|side| side as usize);
@@ -28,8 +28,8 @@ fn kernel(sigma_px: f64) -> Vec<f64> {
     half.into_iter().map(|weight| weight / sum).collect()
 }
 
-/// Three interleaved colours convolved along one direction, which has so many pixels at such a stride, on each line of the
-/// other direction.
+/// Three interleaved colours convolved along one direction, which has so many pixels at such a stride, on each line of
+/// the other direction.
 fn convolved(
     light: &[f64],
     kernel: &[f64],

@@ -37,9 +37,9 @@ pub(super) fn gains(kelvin: f64) -> [f64; 3] {
     gains.map(|gain| gain / luminance)
 }
 
-/// Linear sRGB of a blackbody with luminance 1. The chromaticity is by the polynomials of Kim et al., "Design of advanced
-/// color temperature control system for HDTV applications", Journal of the Korean Physical Society 41, 2002, for 1667 to
-/// 25000 K; the matrix is that of IEC 61966-2-1.
+/// Linear sRGB of a blackbody with luminance 1. The chromaticity is by the polynomials of Kim et al., "Design of
+/// advanced color temperature control system for HDTV applications", Journal of the Korean Physical Society 41, 2002,
+/// for 1667 to 25000 K; the matrix is that of IEC 61966-2-1.
 fn blackbody(kelvin: f64) -> [f64; 3] {
     let (x, y) = chromaticity(kelvin.clamp(1667.0, 25_000.0));
     let xyz = [x / y, 1.0, (1.0 - x - y) / y];
@@ -81,7 +81,8 @@ mod tests {
 
     #[test]
     fn blackbodies_have_the_published_colours() {
-        // Standard illuminant A is a blackbody of 2856 K: x 0.44758, y 0.40745 (CIE 15). The polynomials are off by 0.0005.
+        // Standard illuminant A is a blackbody of 2856 K: x 0.44758, y 0.40745 (CIE 15). The polynomials are off by
+        // 0.0005.
         let (x, y) = chromaticity(2856.0);
         assert!((x - 0.447_58).abs() < 1e-3 && (y - 0.407_45).abs() < 1e-3, "{x} {y}");
         // The pieces of the polynomials meet.

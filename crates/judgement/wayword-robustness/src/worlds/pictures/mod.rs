@@ -27,8 +27,8 @@ pub enum PictureChange {
         /// Standard deviation, pixels; 0 changes nothing.
         sigma_px: f64,
     },
-    /// Gaussian noise on each pixel and colour. It is drawn by the scene, the place, the gaze and the seed: who looks twice
-    /// sees the same, and the noise of two doses is proportional where nothing is cut off.
+    /// Gaussian noise on each pixel and colour. It is drawn by the scene, the place, the gaze and the seed: who looks
+    /// twice sees the same, and the noise of two doses is proportional where nothing is cut off.
     Noise {
         /// Standard deviation, per cent of full scale; 0 changes nothing.
         percent: f64,

@@ -5,7 +5,9 @@ use wayword_core::{Path, Platform};
 use wayword_robustness::{
     Change, Dose, Whole,
     paths::{self, ChangedPath},
-    worlds::{Alter, Altered, CameraHeight, FieldOfView, HeadingNoise, Mirror, PictureChange, QuarterTurn},
+    worlds::{
+        Alter, Altered, CameraHeight, FieldOfView, HeadingNoise, Mirror, PictureChange, QuarterTurn, Tilt, TiltError,
+    },
 };
 
 /// A world with a path through it.
@@ -40,6 +42,8 @@ pub(super) fn of<'a>(arm: &Arm, platform: &'a dyn Platform, path: &Path, seed: u
         Change::By(Dose::FrameSpacing, spacing_m) => walked(paths::spaced(path, *spacing_m)),
         Change::By(Dose::DroppedFrames, percent) => walked(paths::dropped(path, *percent, seed)),
         Change::By(Dose::StartHeading, deg) => walked(paths::start_heading(path, *deg)),
+        Change::By(Dose::Pitch, deg) => tilted(platform, path, Tilt::new(*deg, 0.0))?,
+        Change::By(Dose::Roll, deg) => tilted(platform, path, Tilt::new(0.0, *deg))?,
         other => match pixels(other, seed) {
             Some(pixels) => altered(platform, pixels, path),
             None => return Err(unmade(other)),
@@ -50,10 +54,14 @@ pub(super) fn of<'a>(arm: &Arm, platform: &'a dyn Platform, path: &Path, seed: u
 /// Why a change cannot be made here, whatever the path; `None` where it can.
 pub(super) fn refusal(change: &Change) -> Option<String> {
     let is_made = match change {
-        Change::Platform(_) | Change::By(Dose::Pitch | Dose::Roll, _) => false,
+        Change::Platform(_) => false,
         Change::Whole(_) | Change::By(..) => true,
     };
     (!is_made).then(|| unmade(change))
+}
+
+fn tilted<'a>(platform: &'a dyn Platform, path: &Path, tilt: Result<Tilt, TiltError>) -> Result<World<'a>, String> {
+    tilt.map(|tilt| altered(platform, tilt, path)).map_err(|error| error.to_string())
 }
 
 /// A change of the pixels of every picture.

@@ -1,0 +1,75 @@
+use super::*;
+use crate::worlds::{Altered, testing::*};
+use wayword_core::{Gaze, Platform};
+
+type Twice<A> = Altered<Altered<House, A>, A>;
+
+fn twice<A: Alter + Copy>(alter: A) -> Twice<A> {
+    Altered::new(Altered::new(House, alter), alter)
+}
+
+/// Holds that a world shows the same along a path as the unchanged one.
+fn assert_same(world: &impl Platform) {
+    let (scene, path) = walk();
+    for frame in path.frames.iter().step_by(2) {
+        for gaze in Gaze::around(frame.pose.heading) {
+            let [view, plain] = [world.look(&scene, frame, gaze), House.look(&scene, frame, gaze)].map(Result::unwrap);
+            // Turning a heading rounds, which can shift an edge by a pixel.
+            assert!(mean_difference(&view, &plain) < 0.1);
+            assert!(view.pose.position.distance(plain.pose.position) < 1e-9);
+            assert_eq!(labels(&view).len(), labels(&plain).len());
+            for (a, b) in labels(&view).iter().zip(labels(&plain)) {
+                assert_eq!((&a.object, &a.name, a.distance_m), (&b.object, &b.name, b.distance_m));
+                assert!(a.heading.turn_to(b.heading).abs() < 1e-9);
+                assert!(a.position.unwrap().distance(b.position.unwrap()) < 1e-9);
+                assert!(a.box_px.unwrap().iter().zip(b.box_px.unwrap()).all(|(a, b)| (a - b).abs() <= 1.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn mirrored_twice_or_turned_four_times_it_is_the_same_world() {
+    assert_same(&twice(Mirror));
+    assert_same(&Altered::new(Altered::new(twice(QuarterTurn), QuarterTurn), QuarterTurn));
+}
+
+#[test]
+fn in_a_mirrored_view_everything_lies_on_the_other_side() {
+    let (scene, path) = walk();
+    let mirrored = Mirror.path_after(path.clone());
+    let world = Altered::new(House, Mirror);
+    let mut seen = 0;
+    for (before, after) in path.frames.iter().zip(&mirrored.frames) {
+        let plain = House.look(&scene, before, Gaze::quarter(before.pose.heading)).unwrap();
+        let view = world.look(&scene, after, Gaze::quarter(after.pose.heading)).unwrap();
+        assert_eq!(labels(&view).len(), labels(&plain).len());
+        for (a, b) in labels(&plain).iter().zip(labels(&view)) {
+            seen += 1;
+            let [off, other] = [before.pose.heading.turn_to(a.heading), after.pose.heading.turn_to(b.heading)];
+            assert!((off + other).abs() < 1e-9 && a.object == b.object);
+            let towards = Heading::towards(after.pose.position, b.position.unwrap()).unwrap();
+            assert!(towards.turn_to(b.heading).abs() < 1e-9);
+        }
+        let [first, last] = [(&plain, 0), (&view, 159)].map(|(view, x)| view.image.as_ref().unwrap().rgb()[x * 3]);
+        assert!(first.abs_diff(last) <= 1);
+    }
+    assert!(seen > 10);
+}
+
+#[test]
+fn a_turned_world_shows_the_same_pictures_to_who_turns_with_it() {
+    let (scene, path) = walk();
+    let turned = QuarterTurn.path_after(path.clone());
+    let world = Altered::new(House, QuarterTurn);
+    for (before, after) in path.frames.iter().zip(&turned.frames) {
+        let plain = House.look(&scene, before, Gaze::quarter(before.pose.heading)).unwrap();
+        let view = world.look(&scene, after, Gaze::quarter(after.pose.heading)).unwrap();
+        assert!(mean_difference(&view, &plain) < 0.1);
+        assert!((before.pose.heading.turn_to(after.pose.heading).to_degrees() - 90.0).abs() < 1e-9);
+    }
+    assert_eq!(turned.moves().len(), path.moves().len());
+    for (a, b) in turned.moves().iter().zip(path.moves()) {
+        assert!((a.turn_rad - b.turn_rad).abs() < 1e-9 && (a.distance_m - b.distance_m).abs() < 1e-9);
+    }
+}
