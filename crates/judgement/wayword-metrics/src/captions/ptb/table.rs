@@ -1,0 +1,126 @@
+//! Which shapes tokens have.
+//!
+//! The table was found by asking the reference tokenizer about made-up strings: all short ones over small alphabets, and
+//! millions of random ones. None of its code was used.
+
+/// How much of what a shape covers becomes a token; the rest is read again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Taken {
+    /// All.
+    All,
+    /// The first characters.
+    First(usize),
+    /// All but the last characters, which only have to be there.
+    AllBut(usize),
+    /// All, where it is a known abbreviation with its full stop.
+    Abbreviation,
+    /// All, where a blank or the end comes after it.
+    BeforeBlank,
+    /// All, where no letter or digit comes after it.
+    NotInWord,
+    /// All, where it is an abbreviation before a number. The number and the blank before it are left.
+    BeforeNumber,
+}
+
+use Taken::{Abbreviation, All, AllBut, BeforeBlank, BeforeNumber, First, NotInWord};
+
+/// What is written of a token.
+#[derive(Debug)]
+pub(super) struct Row {
+    /// Its shape ([`super::shape`]).
+    pub(super) shape: &'static str,
+    /// How much of it is the token.
+    pub(super) taken: Taken,
+    /// Something that has the shape.
+    #[cfg(test)]
+    pub(super) example: &'static str,
+}
+
+macro_rules! rows {
+    ($($shape:expr, $taken:expr, $example:expr;)*) => {
+        &[$(Row { shape: $shape, taken: $taken, #[cfg(test)] example: $example }),*]
+    };
+}
+
+/// All shapes. The longest match counts, and of several the first.
+pub(super) const ROWS: &[Row] = rows! {
+    // Marks of web pages and addresses.
+    "</?[a-z_][a-z0-9_:.\\-]*>", All, "</b>";
+    "<[a-z_][a-z0-9_:.\\-]*( +[a-z_:][a-z0-9_:.\\-]*( *= *(\"[^<>\"]*\"|'[^<>']*'))?)* */?>", All, "<b class=\"x\">";
+    "<[!?][a-z\\-][^>]*>", All, "<!-- x -->";
+    "&(amp|lt|gt|quot|apos|nbsp|mdash|ndash);", All, "&amp;";
+    "&([aeiou](acute|grave|uml)|#{digit}+);", All, "&eacute;";
+    "https?://[^ \"<>|()]+[^ \"<>|().!?,{}\\-]", All, "https://a.b/c?d=e";
+    "www\\.([^ \"`'<>|.!?,(){}$]+\\.)+[a-z][a-z][a-z]?[a-z]?(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "www.a.com/bc";
+    "({letter}({letter}|{digit})*\\.)+(com|net|org|edu)(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "a.com/bc";
+    "<?[a-z0-9][^ \"<>|()]*@([^ \"<>|().]+\\.)*[^ \"<>|().{}]+>?", All, "a.b@c.d";
+    "@[a-z_][a-z0-9_]*", All, "@name";
+    "#{letter}+", All, "#tag";
+
+    // Words that are two tokens, and words with an apostrophe.
+    "cannot", First(3), "cannot";
+    "(gon|wan)na", First(3), "gonna";
+    "gotta", First(3), "gotta";
+    "(lem|gim)me", First(3), "gimme";
+    "{apostrophe}t(is|was)", First(2), "'twas";
+    "more{apostrophe}n", AllBut(2), "more'n";
+    "[a-z]*n({apostrophe}|`)t", AllBut(3), "don't";
+    "n({apostrophe}|`)t", All, "n't";
+    "{letter}+{apostrophe}[smd]", AllBut(2), "gonna's";
+    "{letter}+{apostrophe}(re|ve|ll)", AllBut(3), "they've";
+    "{apostrophe}([smd]|re|ve|ll|em|till?|cause|n{apostrophe})", All, "'ve";
+    "{apostrophe}n", BeforeBlank, "'n";
+    "{apostrophe}{letter}{letter}", First(1), "'an";
+    "{apostrophe}{digit}0s", All, "'90s";
+    "{apostrophe}{digit}{digit}", BeforeBlank, "'90";
+    "{apostrophe}{digit}{digit}.", First(1), "'123";
+    "y{apostrophe}{letter}", AllBut(1), "y'a";
+    "[dljDLJ]{apostrophe}|ol{apostrophe}", All, "ol'";
+    "[dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+", All, "d'un";
+    "[A-HJ-XZ]{apostrophe}{letter}{letter}+", All, "M'Bala";
+    "{letter}+[aeiouy]{apostrophe}[aeiou]{letter}*", All, "ma'am";
+    "ev{apostrophe}ry|e{apostrophe}er|c{apostrophe}mon|cap{apostrophe}n|li{apostrophe}l|nat{apostrophe}l|o{apostrophe}o", All, "c'mon";
+
+    // Abbreviations.
+    "[a-z]\\.", All, "B.";
+    "([a-z]\\.)+[a-z]\\.", All, "u.s.";
+    "{letter}+\\.", Abbreviation, "Mr.";
+    "{letter}+\\. ?{digit}", BeforeNumber, "No. 5";
+    "Ph\\.D\\.", All, "Ph.D.";
+    "[A-Z]+([&+][A-Z]+)+", All, "AT&T";
+
+    // Words and numbers, alone and joined.
+    "{letter}({letter}|{digit})*([.!?]{letter}({letter}|{digit})*)*", All, "kitchen.Turn";
+    "({letter}|{digit})+", All, "2nd";
+    "([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+", All, "left-hand";
+    "({letter}|{digit})(({letter}|{digit})|[.,])*(-({letter}|{digit})+)+", All, "U.S.-led";
+    "({letter}|{digit})+(-({letter}|{digit})+)*-([a-z]\\.)+[a-z]\\.", All, "non-U.S.";
+    "({letter}|{digit})+(-{letter}+)*(\\\\?/({letter}|{digit})+(-{letter}+)*)(\\\\?/({letter}|{digit})+(-{letter}+)*)?", All, "left-hand/right-hand";
+    "({letter}({letter}|{digit})*([.!?]{letter}({letter}|{digit})*)*|([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)|([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+|({letter}|{digit})(({letter}|{digit})|[.,])*(-({letter}|{digit})+)+|[A-Z]+([&+][A-Z]+)+)\\.[,;:]", AllBut(1), "hall.,";
+    "[+\\-]?[.,:]?{digit}+([.,:]{digit}+)*", All, "-1,000.5";
+    "{digit}{digit}?[/\\-]{digit}{digit}?[/\\-]{digit}{digit}{digit}?{digit}?", All, "1/2-2004";
+    "{digit}\\.x", All, "2.x";
+    "[½¼¾⅓⅔]", All, "½";
+    "{digit}+[ \\-]?{digit}+\\\\?/{digit}+", All, "1 1/2";
+    "{digit}+\\\\?/{digit}+", All, "1/2";
+    "[A-Z][A-Z]?[A-Z]?[A-Z]?\\$", All, "US$";
+
+    // Faces.
+    "[<>]?[:;=][o*'\\-]?[()DpPO@\\[\\]{\\\\|]", NotInWord, ":-)";
+    "\\(?[<=>^~x'\\-]_[<=>^~x'\\-]\\)?", All, "(^_^)";
+    "o['`._]o", All, "o.O";
+
+    // Signs of several characters.
+    "-[lr][rcs]b-", All, "-LRB-";
+    "c\\+\\+|[cf]#", All, "c#";
+    "\\\\\\*", All, "\\*";
+    "\\.\\.\\.+|\\. \\. \\.", All, "...";
+    "--+", All, "--";
+    "[?!][?!]+", All, "?!";
+    "__+", All, "___";
+    "\\*+", All, "**";
+    "##+", All, "##";
+    "@@+", All, "@@";
+    "<<|>>", All, "<<";
+    "''|``", All, "''";
+};
