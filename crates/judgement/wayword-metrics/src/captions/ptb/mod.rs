@@ -46,7 +46,10 @@ fn taken(row: usize, text: &[char], length: usize) -> usize {
         Taken::AllBut(count) => text.len().saturating_sub(count),
         Taken::Abbreviation => if abbreviations::is_one(&word(text)) { stop() } else { 0 },
         Taken::BeforeBlank => if after.first().is_none_or(|c| *c == ' ') { length } else { 0 },
-        Taken::NotInWord => if after.first().is_none_or(|c| !c.is_alphanumeric()) { length } else { 0 },
+        Taken::NotInWord => if after.first().is_none_or(|c| !c.is_ascii_alphanumeric()) { length } else { 0 },
+        Taken::BeforeLetter => if abbreviations::often_ends(&word(text)) { stop() } else { 0 },
+        Taken::BeforeStop => if after.first().is_none_or(|c| matches!(c, ' ' | '!' | ',' | '.' | '?')) { length } else { 0 },
+        Taken::NotBeforeLetter => if after.first().is_none_or(|c| !c.is_ascii_alphabetic()) { length } else { 0 },
         Taken::BeforeNumber => if abbreviations::is_one_before_a_number(&word(text)) { stop() } else { 0 },
     }
 }
@@ -59,6 +62,9 @@ fn written(token: &[char]) -> Option<String> {
     let entity: String = token.iter().collect();
     if let Some((_, c)) = [("&amp;", "&"), ("&lt;", "<"), ("&gt;", ">")].iter().find(|(e, _)| e.eq_ignore_ascii_case(&entity)) { return Some((*c).to_owned()); }
     if ["&quot;", "&apos;", "&mdash;", "&ndash;", "&nbsp;"].iter().any(|e| e.eq_ignore_ascii_case(&entity)) { return None; }
+    if let Some(quotes) = token.iter().map(|c| quote(*c)).collect::<Option<String>>() && token.len() > 1 {
+        return (!LEFT_OUT.contains(&quotes.as_str())).then_some(quotes);
+    }
     let mut text = String::with_capacity(token.len());
     if let [one] = token && let Some(other) = sign(*one) {
         text.push_str(other);
@@ -67,7 +73,7 @@ fn written(token: &[char]) -> Option<String> {
     } else {
         for c in token {
             match c {
-                &SOFT_HYPHEN => {}
+                &SOFT_HYPHEN if token[0] != '#' && !token.contains(&'@') && !token.contains(&'/') => {}
                 '(' => text.push_str("-lrb-"),
                 ')' => text.push_str("-rrb-"),
                 ' ' => text.push('\u{a0}'),
@@ -77,6 +83,17 @@ fn written(token: &[char]) -> Option<String> {
         }
     }
     (!text.is_empty() && !LEFT_OUT.contains(&text.as_str())).then_some(text)
+}
+
+/// Quotation marks as they are written in a row.
+fn quote(c: char) -> Option<&'static str> {
+    Some(match c {
+        '\'' | '’' => "'",
+        '`' | '‘' => "`",
+        '«' | '“' => "``",
+        '»' | '”' => "''",
+        _ => return None,
+    })
 }
 
 /// Signs that are written otherwise.

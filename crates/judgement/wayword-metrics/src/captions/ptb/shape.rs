@@ -25,6 +25,12 @@ enum Class {
     Digit,
     /// An apostrophe.
     Apostrophe,
+    /// A single quote of any kind, also as an apostrophe.
+    Quote,
+    /// A letter, or a soft hyphen.
+    SoftLetter,
+    /// This character and no other.
+    Exactly(char),
 }
 
 /// Written within words to say where they may be broken; it is no part of the word.
@@ -35,6 +41,11 @@ impl Class {
         match name {
             "letter" => Self::Letter,
             "digit" => Self::Digit,
+            "quote" => Self::Quote,
+            "soft" => Self::SoftLetter,
+            "hyphen" => Self::Exactly(SOFT_HYPHEN),
+            "small o" => Self::Exactly('o'),
+            "small x" => Self::Exactly('x'),
             _ => Self::Apostrophe,
         }
     }
@@ -49,6 +60,9 @@ impl Class {
             }
             Self::Letter => is_letter(c),
             Self::Digit => is_digit(c),
+            Self::Quote => matches!(c, '\'' | '`' | '\u{2018}' | '\u{2019}' | '\u{91}' | '\u{92}'),
+            Self::SoftLetter => is_letter(c) || c == SOFT_HYPHEN,
+            Self::Exactly(same) => c == *same,
             Self::Apostrophe => matches!(c, '\'' | '\u{2019}' | '\u{92}'),
         }
     }
@@ -59,7 +73,7 @@ fn is_same(pattern: char, c: char) -> bool {
 }
 
 fn is_letter(c: char) -> bool {
-    c.is_alphabetic() || c == SOFT_HYPHEN
+    c.is_alphabetic()
 }
 
 fn is_digit(c: char) -> bool {

@@ -16,13 +16,19 @@ pub(super) enum Taken {
     Abbreviation,
     /// All, where a blank or the end comes after it.
     BeforeBlank,
+    /// All, where a blank, a comma, the end of a sentence or of the text comes after it.
+    BeforeStop,
+    /// All, where no letter comes after it.
+    NotBeforeLetter,
     /// All, where no letter or digit comes after it.
     NotInWord,
+    /// All but the letter after it, where it is an abbreviation that often ends a sentence.
+    BeforeLetter,
     /// All, where it is an abbreviation before a number. The number and the blank before it are left.
     BeforeNumber,
 }
 
-use Taken::{Abbreviation, All, AllBut, BeforeBlank, BeforeNumber, First, NotInWord};
+use Taken::{Abbreviation, All, AllBut, BeforeBlank, BeforeStop, BeforeLetter, BeforeNumber, First, NotBeforeLetter, NotInWord};
 
 /// What is written of a token.
 #[derive(Debug)]
@@ -53,9 +59,9 @@ pub(super) const ROWS: &[Row] = rows! {
     "https?://[^ \"<>|()]+[^ \"<>|().!?,{}\\-]", All, "https://a.b/c?d=e";
     "www\\.([^ \"`'<>|.!?,(){}$]+\\.)+[a-z][a-z][a-z]?[a-z]?(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "www.a.com/bc";
     "({letter}({letter}|{digit})*\\.)+(com|net|org|edu)(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "a.com/bc";
-    "<?[a-z0-9][^ \"<>|()]*@([^ \"<>|().]+\\.)*[^ \"<>|().{}]+>?", All, "a.b@c.d";
+    "<?[a-z0-9][^ \"<>|(){}]*@([^ \"<>|().]+\\.)*[^ \"<>|().{}]+>?", All, "a.b@c.d";
     "@[a-z_][a-z0-9_]*", All, "@name";
-    "#{letter}+", All, "#tag";
+    "#{soft}+", All, "#tag";
 
     // Words that are two tokens, and words with an apostrophe.
     "cannot", First(3), "cannot";
@@ -68,7 +74,8 @@ pub(super) const ROWS: &[Row] = rows! {
     "n({apostrophe}|`)t", All, "n't";
     "{letter}+{apostrophe}[smd]", AllBut(2), "gonna's";
     "{letter}+{apostrophe}(re|ve|ll)", AllBut(3), "they've";
-    "{apostrophe}([smd]|re|ve|ll|em|till?|cause|n{apostrophe})", All, "'ve";
+    "{apostrophe}([smd]|re|ve|ll)", NotBeforeLetter, "'ve";
+    "{apostrophe}(em|till?|cause|n{apostrophe})", All, "'em";
     "{apostrophe}n", BeforeBlank, "'n";
     "{apostrophe}{letter}{letter}", First(1), "'an";
     "{apostrophe}{digit}0s", All, "'90s";
@@ -76,38 +83,40 @@ pub(super) const ROWS: &[Row] = rows! {
     "{apostrophe}{digit}{digit}.", First(1), "'123";
     "y{apostrophe}{letter}", AllBut(1), "y'a";
     "[dljDLJ]{apostrophe}|ol{apostrophe}", All, "ol'";
-    "[dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+", All, "d'un";
-    "[A-HJ-XZ]{apostrophe}{letter}{letter}+", All, "M'Bala";
-    "{letter}+[aeiouy]{apostrophe}[aeiou]{letter}*", All, "ma'am";
+    "[dlo]{quote}({letter}|{digit})({letter}|{digit})+", All, "d'un";
+    "n{quote}{letter}{letter}+|[A-HJ-XZ]{quote}{letter}{letter}+", All, "M'Bala";
+    "{letter}+[aeiouy]{quote}[aeiouA-Z]{letter}*", All, "ma'am";
     "ev{apostrophe}ry|e{apostrophe}er|c{apostrophe}mon|cap{apostrophe}n|li{apostrophe}l|nat{apostrophe}l|o{apostrophe}o", All, "c'mon";
 
     // Abbreviations.
     "[a-z]\\.", All, "B.";
     "([a-z]\\.)+[a-z]\\.", All, "u.s.";
     "{letter}+\\.", Abbreviation, "Mr.";
+    "{letter}+\\.{letter}", BeforeLetter, "etc.a";
     "{letter}+\\. ?{digit}", BeforeNumber, "No. 5";
     "Ph\\.D\\.", All, "Ph.D.";
     "[A-Z]+([&+][A-Z]+)+", All, "AT&T";
 
     // Words and numbers, alone and joined.
-    "{letter}({letter}|{digit})*([.!?]{letter}({letter}|{digit})*)*", All, "kitchen.Turn";
+    "{soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*", All, "kitchen.Turn";
     "({letter}|{digit})+", All, "2nd";
-    "([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+", All, "left-hand";
-    "({letter}|{digit})(({letter}|{digit})|[.,])*(-({letter}|{digit})+)+", All, "U.S.-led";
+    "([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+", All, "left-hand";
+    "[a-z0-9]([a-z0-9.,]|{hyphen})*(-([a-z0-9]|{hyphen})+)+", All, "U.S.-led";
     "({letter}|{digit})+(-({letter}|{digit})+)*-([a-z]\\.)+[a-z]\\.", All, "non-U.S.";
-    "({letter}|{digit})+(-{letter}+)*(\\\\?/({letter}|{digit})+(-{letter}+)*)(\\\\?/({letter}|{digit})+(-{letter}+)*)?", All, "left-hand/right-hand";
-    "({letter}({letter}|{digit})*([.!?]{letter}({letter}|{digit})*)*|([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)|([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlon]{apostrophe}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+|({letter}|{digit})(({letter}|{digit})|[.,])*(-({letter}|{digit})+)+|[A-Z]+([&+][A-Z]+)+)\\.[,;:]", AllBut(1), "hall.,";
-    "[+\\-]?[.,:]?{digit}+([.,:]{digit}+)*", All, "-1,000.5";
+    "[a-z0-9]+(-[a-z]+)*(\\\\?/[a-z0-9]+(-[a-z]+)*)(\\\\?/[a-z0-9]+(-[a-z]+)*)?", All, "left-hand/right-hand";
+    "({soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*|([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)|([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+|[a-z0-9]([a-z0-9.,]|{hyphen})*(-([a-z0-9]|{hyphen})+)+|[A-Z]+([&+][A-Z]+)+)\\.[,;:]", AllBut(1), "hall.,";
+    "[+\\-]?({hyphen}?|[.,:]){digit}({hyphen}?{digit})*([.,:]{digit}({hyphen}?{digit})*)*", All, "-1,000.5";
     "{digit}{digit}?[/\\-]{digit}{digit}?[/\\-]{digit}{digit}{digit}?{digit}?", All, "1/2-2004";
-    "{digit}\\.x", All, "2.x";
+    "(({letter}|{digit})+\\.)+(bat|bmp|c|cgi|cpp|dll|docx?|exe|gif|gz|h|html?|jar|java|jpe?g|mov|pdf|php|pl|png|ppt|ps|py|sql|tar|txt|wav|x|xml|zip)", BeforeStop, "1.jpg";
+    "[¹²³]+", All, "²";
     "[½¼¾⅓⅔]", All, "½";
     "{digit}+[ \\-]?{digit}+\\\\?/{digit}+", All, "1 1/2";
     "{digit}+\\\\?/{digit}+", All, "1/2";
     "[A-Z][A-Z]?[A-Z]?[A-Z]?\\$", All, "US$";
 
     // Faces.
-    "[<>]?[:;=][o*'\\-]?[()DpPO@\\[\\]{\\\\|]", NotInWord, ":-)";
-    "\\(?[<=>^~x'\\-]_[<=>^~x'\\-]\\)?", All, "(^_^)";
+    "[<>]?[:;=]([*'\\-]|{small o})?([()@\\[\\]{\\\\|d-dp-p]|O)", NotInWord, ":-)";
+    "([<=>^~'\\-]|{small x})_([<=>^~'\\-]|{small x})|\\(([<=>^~'\\-]|{small x})_([<=>^~'\\-]|{small x})\\)", All, "(^_^)";
     "o['`._]o", All, "o.O";
 
     // Signs of several characters.
@@ -122,5 +131,5 @@ pub(super) const ROWS: &[Row] = rows! {
     "##+", All, "##";
     "@@+", All, "@@";
     "<<|>>", All, "<<";
-    "''|``", All, "''";
+    "''|[`«»‘’“”][`«»‘’“”]", All, "''";
 };
