@@ -48,6 +48,7 @@ fn taken(row: usize, text: &[char], length: usize) -> usize {
         Taken::BeforeBlank => if after.first().is_none_or(|c| *c == ' ') { length } else { 0 },
         Taken::NotInWord => if after.first().is_none_or(|c| !c.is_ascii_alphanumeric()) { length } else { 0 },
         Taken::BeforeLetter => if abbreviations::often_ends(&word(text)) { stop() } else { 0 },
+        Taken::BeforeSentence => usize::from(after.first().is_none_or(|c| *c == ' ')),
         Taken::BeforeStop => if after.first().is_none_or(|c| matches!(c, ' ' | '!' | ',' | '.' | '?')) { length } else { 0 },
         Taken::NotBeforeLetter => if after.first().is_none_or(|c| !c.is_ascii_alphabetic()) { length } else { 0 },
         Taken::BeforeNumber => if abbreviations::is_one_before_a_number(&word(text)) { stop() } else { 0 },

@@ -44,6 +44,7 @@ impl Class {
             "quote" => Self::Quote,
             "soft" => Self::SoftLetter,
             "hyphen" => Self::Exactly(SOFT_HYPHEN),
+            "small n" => Self::Exactly('n'),
             "small o" => Self::Exactly('o'),
             "small x" => Self::Exactly('x'),
             _ => Self::Apostrophe,

@@ -16,6 +16,8 @@ pub(super) enum Taken {
     Abbreviation,
     /// All, where a blank or the end comes after it.
     BeforeBlank,
+    /// The first character, where a blank or the end comes after it all.
+    BeforeSentence,
     /// All, where a blank, a comma, the end of a sentence or of the text comes after it.
     BeforeStop,
     /// All, where no letter comes after it.
@@ -28,7 +30,10 @@ pub(super) enum Taken {
     BeforeNumber,
 }
 
-use Taken::{Abbreviation, All, AllBut, BeforeBlank, BeforeStop, BeforeLetter, BeforeNumber, First, NotBeforeLetter, NotInWord};
+use Taken::{
+    Abbreviation, All, AllBut, BeforeBlank, BeforeLetter, BeforeNumber, BeforeSentence, BeforeStop, First, NotBeforeLetter,
+    NotInWord,
+};
 
 /// What is written of a token.
 #[derive(Debug)]
@@ -51,15 +56,15 @@ macro_rules! rows {
 /// All shapes. The longest match counts, and of several the first.
 pub(super) const ROWS: &[Row] = rows! {
     // Marks of web pages and addresses.
-    "</?[a-z_][a-z0-9_:.\\-]*>", All, "</b>";
-    "<[a-z_][a-z0-9_:.\\-]*( +[a-z_:][a-z0-9_:.\\-]*( *= *(\"[^<>\"]*\"|'[^<>']*'))?)* */?>", All, "<b class=\"x\">";
+    "</?[a-z][a-z0-9_:.\\-]*>", All, "</b>";
+    "<[a-z][a-z0-9_:.\\-]*( +[a-z_:][a-z0-9_:.\\-]*( *= *(\"[^<>\"]*\"|'[^<>']*'))?)* */?>", All, "<b class=\"x\">";
     "<[!?][a-z\\-][^>]*>", All, "<!-- x -->";
     "&(amp|lt|gt|quot|apos|nbsp|mdash|ndash);", All, "&amp;";
     "&([aeiou](acute|grave|uml)|#{digit}+);", All, "&eacute;";
     "https?://[^ \"<>|()]+[^ \"<>|().!?,{}\\-]", All, "https://a.b/c?d=e";
     "www\\.([^ \"`'<>|.!?,(){}$]+\\.)+[a-z][a-z][a-z]?[a-z]?(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "www.a.com/bc";
     "({letter}({letter}|{digit})*\\.)+(com|net|org|edu)(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "a.com/bc";
-    "<?[a-z0-9][^ \"<>|(){}]*@([^ \"<>|().]+\\.)*[^ \"<>|().{}]+>?", All, "a.b@c.d";
+    "<?[a-z0-9][^ \"<>|(){}]*@([^ \"<>|().{}]+\\.)*[^ \"<>|().{}]+>?", All, "a.b@c.d";
     "@[a-z_][a-z0-9_]*", All, "@name";
     "#{soft}+", All, "#tag";
 
@@ -69,7 +74,7 @@ pub(super) const ROWS: &[Row] = rows! {
     "gotta", First(3), "gotta";
     "(lem|gim)me", First(3), "gimme";
     "{apostrophe}t(is|was)", First(2), "'twas";
-    "more{apostrophe}n", AllBut(2), "more'n";
+    "more{apostrophe}{small n}", AllBut(2), "more'n";
     "[a-z]*n({apostrophe}|`)t", AllBut(3), "don't";
     "n({apostrophe}|`)t", All, "n't";
     "{letter}+{apostrophe}[smd]", AllBut(2), "gonna's";
@@ -77,8 +82,8 @@ pub(super) const ROWS: &[Row] = rows! {
     "{apostrophe}([smd]|re|ve|ll)", NotBeforeLetter, "'ve";
     "{apostrophe}(em|till?|cause|n{apostrophe})", All, "'em";
     "{apostrophe}n", BeforeBlank, "'n";
-    "{apostrophe}{letter}{letter}", First(1), "'an";
-    "{apostrophe}{digit}0s", All, "'90s";
+    "{apostrophe}[a-z][a-z]", First(1), "'an";
+    "{apostrophe}[2-9]0s", All, "'90s";
     "{apostrophe}{digit}{digit}", BeforeBlank, "'90";
     "{apostrophe}{digit}{digit}.", First(1), "'123";
     "y{apostrophe}{letter}", AllBut(1), "y'a";
@@ -89,12 +94,15 @@ pub(super) const ROWS: &[Row] = rows! {
     "ev{apostrophe}ry|e{apostrophe}er|c{apostrophe}mon|cap{apostrophe}n|li{apostrophe}l|nat{apostrophe}l|o{apostrophe}o", All, "c'mon";
 
     // Abbreviations.
+    // "Go to bedroom a. Then turn": words that often begin a sentence.
+    "[a-z]\\. +(A|About|According|Additionally|After|An|As|At|But|Earlier|He|Her|Here|However|If|In|It|Last|Many|More|Now|Once|One|Other|Our|She|Since|So|Some|Such|That|The|Their|Then|There|These|They|This|We|What|When|While|Yet|You)", BeforeSentence, "a. Then";
     "[a-z]\\.", All, "B.";
     "([a-z]\\.)+[a-z]\\.", All, "u.s.";
     "{letter}+\\.", Abbreviation, "Mr.";
     "{letter}+\\.{letter}", BeforeLetter, "etc.a";
     "{letter}+\\. ?{digit}", BeforeNumber, "No. 5";
-    "Ph\\.D\\.", All, "Ph.D.";
+    "ph\\.d\\.", All, "Ph.D.";
+    "ph\\.d\\.{letter}", AllBut(1), "Ph.D.s";
     "[A-Z]+([&+][A-Z]+)+", All, "AT&T";
 
     // Words and numbers, alone and joined.
@@ -112,11 +120,11 @@ pub(super) const ROWS: &[Row] = rows! {
     "[½¼¾⅓⅔]", All, "½";
     "{digit}+[ \\-]?{digit}+\\\\?/{digit}+", All, "1 1/2";
     "{digit}+\\\\?/{digit}+", All, "1/2";
-    "[A-Z][A-Z]?[A-Z]?[A-Z]?\\$", All, "US$";
+    "[A-Z]+\\$", All, "US$";
 
     // Faces.
     "[<>]?[:;=]([*'\\-]|{small o})?([()@\\[\\]{\\\\|d-dp-p]|O)", NotInWord, ":-)";
-    "([<=>^~'\\-]|{small x})_([<=>^~'\\-]|{small x})|\\(([<=>^~'\\-]|{small x})_([<=>^~'\\-]|{small x})\\)", All, "(^_^)";
+    "([<=>^~'\\-]|{small x})_([<=>^~'\\-]|{small x})|\\(([<=>^~'\\-]|{small x})_?([<=>^~'\\-]|{small x})\\)", All, "(^_^)";
     "o['`._]o", All, "o.O";
 
     // Signs of several characters.
