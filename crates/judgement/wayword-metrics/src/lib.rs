@@ -5,6 +5,7 @@
 //! gives the same figures.
 
 mod bootstrap;
+pub mod captions;
 mod correlation;
 mod mcnemar;
 mod similarity;

@@ -29,6 +29,10 @@ enum Class {
     Quote,
     /// A letter, or a soft hyphen.
     SoftLetter,
+    /// A small letter of ASCII.
+    Small,
+    /// What ASCII has not.
+    High,
     /// This character and no other.
     Exactly(char),
 }
@@ -44,6 +48,8 @@ impl Class {
             "quote" => Self::Quote,
             "soft" => Self::SoftLetter,
             "hyphen" => Self::Exactly(SOFT_HYPHEN),
+            "small" => Self::Small,
+            "high" => Self::High,
             "small n" => Self::Exactly('n'),
             "small o" => Self::Exactly('o'),
             "small x" => Self::Exactly('x'),
@@ -63,6 +69,8 @@ impl Class {
             Self::Digit => is_digit(c),
             Self::Quote => matches!(c, '\'' | '`' | '\u{2018}' | '\u{2019}' | '\u{91}' | '\u{92}'),
             Self::SoftLetter => is_letter(c) || c == SOFT_HYPHEN,
+            Self::Small => c.is_ascii_lowercase(),
+            Self::High => !c.is_ascii(),
             Self::Exactly(same) => c == *same,
             Self::Apostrophe => matches!(c, '\'' | '\u{2019}' | '\u{92}'),
         }
@@ -78,7 +86,8 @@ fn is_letter(c: char) -> bool {
 }
 
 fn is_digit(c: char) -> bool {
-    c.is_ascii_digit() || (!c.is_ascii() && !c.is_alphabetic() && c.is_numeric() && c.to_digit(36).is_none() && is_decimal(c))
+    c.is_ascii_digit()
+        || (!c.is_ascii() && !c.is_alphabetic() && c.is_numeric() && c.to_digit(36).is_none() && is_decimal(c))
 }
 
 /// Digits of other scripts, which come in runs of ten.
@@ -196,10 +205,11 @@ impl Shapes {
                 let at = vec![self.places.len() - 1];
                 Ends { first: at.clone(), last: at, may_be_empty: false }
             }
-            Part::Row(parts) => parts.iter().fold(
-                Ends { first: Vec::new(), last: Vec::new(), may_be_empty: true },
-                |before, part| self.then(before, part),
-            ),
+            Part::Row(parts) => {
+                parts.iter().fold(Ends { first: Vec::new(), last: Vec::new(), may_be_empty: true }, |before, part| {
+                    self.then(before, part)
+                })
+            }
             Part::Either(ways) => {
                 let mut all = Ends { first: Vec::new(), last: Vec::new(), may_be_empty: false };
                 for way in ways {

@@ -8,6 +8,8 @@
 pub(super) enum Taken {
     /// All.
     All,
+    /// All, as it stands: soft hyphens are kept.
+    Address,
     /// The first characters.
     First(usize),
     /// All but the last characters, which only have to be there.
@@ -19,7 +21,7 @@ pub(super) enum Taken {
     /// The first character, where a blank or the end comes after it all.
     BeforeSentence,
     /// All, where a blank, a comma, the end of a sentence or of the text comes after it.
-    BeforeStop,
+    File,
     /// All, where no letter comes after it.
     NotBeforeLetter,
     /// All, where no letter or digit comes after it.
@@ -31,8 +33,8 @@ pub(super) enum Taken {
 }
 
 use Taken::{
-    Abbreviation, All, AllBut, BeforeBlank, BeforeLetter, BeforeNumber, BeforeSentence, BeforeStop, First, NotBeforeLetter,
-    NotInWord,
+    Abbreviation, Address, All, AllBut, BeforeBlank, BeforeLetter, BeforeNumber, BeforeSentence, File, First,
+    NotBeforeLetter, NotInWord,
 };
 
 /// What is written of a token.
@@ -56,36 +58,33 @@ macro_rules! rows {
 /// All shapes. The longest match counts, and of several the first.
 pub(super) const ROWS: &[Row] = rows! {
     // Marks of web pages and addresses.
-    "</?[a-z][a-z0-9_:.\\-]*>", All, "</b>";
-    "<[a-z][a-z0-9_:.\\-]*( +[a-z_:][a-z0-9_:.\\-]*( *= *(\"[^<>\"]*\"|'[^<>']*'))?)* */?>", All, "<b class=\"x\">";
-    "<[!?][a-z\\-][^>]*>", All, "<!-- x -->";
+    "</?[a-z][a-z0-9_:.\\-]*>|<[a-z][a-z0-9_:.\\-]*( +[a-z][a-z0-9_:.\\-]*( *= *(\"[^\"]*\"|'[^']*'))?)* */?>|<[!?][a-z\\-][^>]*>", Address, "<b class=\"x\">";
     "&(amp|lt|gt|quot|apos|nbsp|mdash|ndash);", All, "&amp;";
-    "&([aeiou](acute|grave|uml)|#{digit}+);", All, "&eacute;";
-    "https?://[^ \"<>|()]+[^ \"<>|().!?,{}\\-]", All, "https://a.b/c?d=e";
-    "www\\.([^ \"`'<>|.!?,(){}$]+\\.)+[a-z][a-z][a-z]?[a-z]?(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "www.a.com/bc";
-    "({letter}({letter}|{digit})*\\.)+(com|net|org|edu)(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", All, "a.com/bc";
-    "<?[a-z0-9][^ \"<>|(){}]*@([^ \"<>|().{}]+\\.)*[^ \"<>|().{}]+>?", All, "a.b@c.d";
+    "&([aeiou](acute|grave|uml)|#{digit}+|ht|lr|md|q[clr]|tl|ur);", Address, "&eacute;";
+    "https?://[^ \"<>|(){}]+[^ \"<>|().!?,{}\\-]", Address, "https://a.b/c?d=e";
+    "www\\.([^ \"<>|.!?,(){}]+\\.)+[a-z][a-z][a-z]?[a-z]?(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", Address, "www.a.com/bc";
+    "(<|&lt;)?[a-z0-9][^ \"<>|(){}]*@([^ \"<>|().{}]+\\.)*[^ \"<>|().{}]+>?", Address, "a.b@c.d";
     "@[a-z_][a-z0-9_]*", All, "@name";
-    "#{soft}+", All, "#tag";
+    "#{soft}+", Address, "#tag";
 
     // Words that are two tokens, and words with an apostrophe.
     "cannot", First(3), "cannot";
     "(gon|wan)na", First(3), "gonna";
     "gotta", First(3), "gotta";
     "(lem|gim)me", First(3), "gimme";
-    "{apostrophe}t(is|was)", First(2), "'twas";
+    "'t(is|was)", First(2), "'twas";
     "more{apostrophe}{small n}", AllBut(2), "more'n";
-    "[a-z]*n({apostrophe}|`)t", AllBut(3), "don't";
+    "([a-z]|{hyphen})*n({apostrophe}|`)t", AllBut(3), "don't";
     "n({apostrophe}|`)t", All, "n't";
-    "{letter}+{apostrophe}[smd]", AllBut(2), "gonna's";
-    "{letter}+{apostrophe}(re|ve|ll)", AllBut(3), "they've";
-    "{apostrophe}([smd]|re|ve|ll)", NotBeforeLetter, "'ve";
+    "{soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*{apostrophe}[smd]", AllBut(2), "gonna's";
+    "{soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*{apostrophe}(re|ve|ll)", AllBut(3), "they've";
+    "'([smd]|re|ve|ll)", NotBeforeLetter, "'ve";
+    "’([smd]|re|ve|ll)|’n", All, "’ve";
     "{apostrophe}(em|till?|cause|n{apostrophe})", All, "'em";
-    "{apostrophe}n", BeforeBlank, "'n";
-    "{apostrophe}[a-z][a-z]", First(1), "'an";
+    "'n", BeforeBlank, "'n";
+    "'[a-z][a-z]", First(1), "'an";
     "{apostrophe}[2-9]0s", All, "'90s";
     "{apostrophe}{digit}{digit}", BeforeBlank, "'90";
-    "{apostrophe}{digit}{digit}.", First(1), "'123";
     "y{apostrophe}{letter}", AllBut(1), "y'a";
     "[dljDLJ]{apostrophe}|ol{apostrophe}", All, "ol'";
     "[dlo]{quote}({letter}|{digit})({letter}|{digit})+", All, "d'un";
@@ -95,30 +94,33 @@ pub(super) const ROWS: &[Row] = rows! {
 
     // Abbreviations.
     // "Go to bedroom a. Then turn": words that often begin a sentence.
-    "[a-z]\\. +(A|About|According|Additionally|After|An|As|At|But|Earlier|He|Her|Here|However|If|In|It|Last|Many|More|Now|Once|One|Other|Our|She|Since|So|Some|Such|That|The|Their|Then|There|These|They|This|We|What|When|While|Yet|You)", BeforeSentence, "a. Then";
+    "[a-z]\\. +(A|About|According|Additionally|After|An|As|At|But|Earlier|He|Her|Here|However|If|In|It|Last|Many|More|Now|Once|One|Other|Our|She|Since|So|Some|Such|That|The|Their|Then|There|These|They|This|We|What|When|While|Yet|You|M[rs]\\.|</?[a-z][a-z0-9_:.\\-]*>|<[a-z][a-z0-9_:.\\-]*( +[a-z][a-z0-9_:.\\-]*( *= *(\"[^\"]*\"|'[^']*'))?)* */?>|<[!?][a-z\\-][^>]*>)", BeforeSentence, "a. Then";
     "[a-z]\\.", All, "B.";
     "([a-z]\\.)+[a-z]\\.", All, "u.s.";
     "{letter}+\\.", Abbreviation, "Mr.";
-    "{letter}+\\.{letter}", BeforeLetter, "etc.a";
+    "{letter}+\\.-?({letter}|{digit})", BeforeLetter, "etc.a";
     "{letter}+\\. ?{digit}", BeforeNumber, "No. 5";
     "ph\\.d\\.", All, "Ph.D.";
-    "ph\\.d\\.{letter}", AllBut(1), "Ph.D.s";
-    "[A-Z]+([&+][A-Z]+)+", All, "AT&T";
+    "ph\\.d\\.-?({letter}|{digit})", First(5), "Ph.D.s";
+    "[A-Z]+(([&+]|&amp;)[A-Z]+)+", All, "AT&T";
 
     // Words and numbers, alone and joined.
+    "(({soft}|{digit})+\\.)+(bat|bmp|c|cgi|cpp|dll|docx?|exe|gif|gz|h|html?|jar|java|jpe?g|mov|pdf|php|pl|png|ppt|ps|py|sql|tar|txt|wav|x|xml|zip)", File, "1.jpg";
     "{soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*", All, "kitchen.Turn";
+    "(([#%&*+~]|{small}|{high})+\\.)+(com|net|org|edu)(/[^ \"<>|()]+[^ \"<>|().!?,{}\\-])?", Address, "a.com/bc";
     "({letter}|{digit})+", All, "2nd";
     "([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+", All, "left-hand";
     "[a-z0-9]([a-z0-9.,]|{hyphen})*(-([a-z0-9]|{hyphen})+)+", All, "U.S.-led";
-    "({letter}|{digit})+(-({letter}|{digit})+)*-([a-z]\\.)+[a-z]\\.", All, "non-U.S.";
-    "[a-z0-9]+(-[a-z]+)*(\\\\?/[a-z0-9]+(-[a-z]+)*)(\\\\?/[a-z0-9]+(-[a-z]+)*)?", All, "left-hand/right-hand";
+    "[a-z0-9]([a-z0-9.,]|{hyphen})*(-([a-z0-9]|{hyphen})+)*-([a-z]\\.)+[a-z]\\.(-({letter}|{digit})+)*", All, "non-U.S.";
+    "[a-z0-9]+(-[a-z]+)?(-[a-z]+)?(\\\\?/[a-z0-9]+(-[a-z]+)?(-[a-z]+)?)(\\\\?/[a-z0-9]+(-[a-z]+)?(-[a-z]+)?)?", All, "left-hand/right-hand";
     "({soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*|([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)|([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+)([_\\-]([dlo]{quote}({letter}|{digit})({letter}|{digit})+|({letter}|{digit})+))+|[a-z0-9]([a-z0-9.,]|{hyphen})*(-([a-z0-9]|{hyphen})+)+|[A-Z]+([&+][A-Z]+)+)\\.[,;:]", AllBut(1), "hall.,";
     "[+\\-]?({hyphen}?|[.,:]){digit}({hyphen}?{digit})*([.,:]{digit}({hyphen}?{digit})*)*", All, "-1,000.5";
     "{digit}{digit}?[/\\-]{digit}{digit}?[/\\-]{digit}{digit}{digit}?{digit}?", All, "1/2-2004";
-    "(({letter}|{digit})+\\.)+(bat|bmp|c|cgi|cpp|dll|docx?|exe|gif|gz|h|html?|jar|java|jpe?g|mov|pdf|php|pl|png|ppt|ps|py|sql|tar|txt|wav|x|xml|zip)", BeforeStop, "1.jpg";
     "[¹²³]+", All, "²";
     "[½¼¾⅓⅔]", All, "½";
-    "{digit}+[ \\-]?{digit}+\\\\?/{digit}+", All, "1 1/2";
+    "\\({digit}{digit}{digit}?\\) ?{digit}{digit}{digit}{digit}?[ \\-]?{digit}{digit}{digit}{digit}?{digit}?", All, "(555) 555-1234";
+    "(\\+\\+?)?{digit}{digit}{digit}?{digit}?[ \\-]({digit}{digit}{digit}?{digit}?[ \\-])?{digit}{digit}{digit}{digit}?[ \\-]?{digit}{digit}{digit}{digit}?{digit}?", All, "+44 20 1234 5678";
+    "{digit}{digit}?{digit}?{digit}?[ \\-]{digit}{digit}?{digit}?{digit}?\\\\?/{digit}{digit}?{digit}?{digit}?", All, "1 1/2";
     "{digit}+\\\\?/{digit}+", All, "1/2";
     "[A-Z]+\\$", All, "US$";
 
@@ -128,6 +130,7 @@ pub(super) const ROWS: &[Row] = rows! {
     "o['`._]o", All, "o.O";
 
     // Signs of several characters.
+    "(anti|pro)-", All, "pro-";
     "-[lr][rcs]b-", All, "-LRB-";
     "c\\+\\+|[cf]#", All, "c#";
     "\\\\\\*", All, "\\*";
@@ -139,5 +142,5 @@ pub(super) const ROWS: &[Row] = rows! {
     "##+", All, "##";
     "@@+", All, "@@";
     "<<|>>", All, "<<";
-    "''|[`«»‘’“”][`«»‘’“”]", All, "''";
+    "''|[`«»‘’“”‹›][`«»‘’“”‹›]", All, "''";
 };
