@@ -106,7 +106,7 @@ fn of_characters(taken: Taken, token: &str) -> String {
             '(' => text.push_str("-lrb-"),
             ')' => text.push_str("-rrb-"),
             ' ' => text.push(NO_BREAK),
-            '’' if is_ending => text.push('\''),
+            '’' | '\u{92}' if is_ending => text.push('\''),
             c => text.extend(c.to_lowercase()),
         }
     }
@@ -115,7 +115,9 @@ fn of_characters(taken: Taken, token: &str) -> String {
 
 /// Whether a token is one of the endings 's, 'm, 'd, 're, 've, 'll and n't: only there a curly apostrophe becomes a straight one.
 fn has_curly_apostrophe(token: &str) -> bool {
-    ["’s", "’m", "’d", "’re", "’ve", "’ll", "n’t"].iter().any(|ending| ending.eq_ignore_ascii_case(token))
+    ["’s", "’m", "’d", "’re", "’ve", "’ll", "n’t"]
+        .iter()
+        .any(|ending| ending.eq_ignore_ascii_case(&token.replace('\u{92}', "’")))
 }
 
 /// What HTML's names for signs are written as.
@@ -132,10 +134,10 @@ fn entity(text: &str) -> Option<&'static str> {
 /// Quotation marks as they are written in a row.
 fn quote(c: char) -> Option<&'static str> {
     Some(match c {
-        '\'' | '’' | '›' => "'",
-        '`' | '‘' | '‹' => "`",
-        '«' | '“' => "``",
-        '»' | '”' => "''",
+        '\'' | '’' | '›' | '\u{92}' => "'",
+        '`' | '‘' | '‹' | '\u{91}' => "`",
+        '«' | '“' | '\u{93}' => "``",
+        '»' | '”' | '\u{94}' => "''",
         _ => return None,
     })
 }
@@ -156,7 +158,7 @@ fn sign(c: char) -> Option<Option<&'static str>> {
         '⅔' => "2/3",
         '£' => "#",
         '¢' => "cents",
-        '¤' | '€' => "$",
+        '¤' | '€' | '\u{80}' => "$",
         '"' | '…' | SOFT_HYPHEN | '\u{2010}'..='\u{2015}' => return Some(None),
         c if quote(c).is_some() => return Some(None),
         // The reference drops what it cannot read, and says so.

@@ -79,7 +79,7 @@ pub(super) const ROWS: &[Row] = rows! {
     "{soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*{apostrophe}[smd]", AllBut(2), "gonna's";
     "{soft}({soft}|{digit})*([.!?]{soft}({soft}|{digit})*)*{apostrophe}(re|ve|ll)", AllBut(3), "they've";
     "'([smd]|re|ve|ll)", NotBeforeLetter, "'ve";
-    "’([smd]|re|ve|ll)|’n", All, "’ve";
+    "[’\u{92}]([smd]|re|ve|ll|n)", All, "’ve";
     "{apostrophe}(em|till?|cause|n{apostrophe})", All, "'em";
     "'n", BeforeBlank, "'n";
     "'[a-z][a-z]", First(1), "'an";
@@ -142,5 +142,5 @@ pub(super) const ROWS: &[Row] = rows! {
     "##+", All, "##";
     "@@+", All, "@@";
     "<<|>>", All, "<<";
-    "''|[`«»‘’“”‹›][`«»‘’“”‹›]", All, "''";
+    "''|[`«»‘’“”‹›\u{91}-\u{94}][`«»‘’“”‹›\u{91}-\u{94}]", All, "''";
 };
