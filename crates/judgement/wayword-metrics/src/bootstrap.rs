@@ -1,5 +1,6 @@
 //! How far a mean can be trusted when values come in groups.
 
+use crate::Drawing;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -63,6 +64,32 @@ pub fn clustered_interval_of<C: Ord>(
         high: quantile(&means, 1.0 - tail),
         values: values.len(),
         clusters: clusters.len(),
+    })
+}
+
+/// Intervals of figures that are no means: `figures` is given the numbers of the clusters that were drawn, some of them
+/// several times. A draw that gives no number for a figure is left out of that figure's interval, which is then NaN
+/// where no draw gives one.
+pub(crate) fn interval_of<const N: usize>(
+    clusters: usize,
+    drawing: &Drawing,
+    mut figures: impl FnMut(&[usize]) -> [f64; N],
+) -> [(f64, f64); N] {
+    let mut rng = rng(drawing.seed, &["bootstrap"]);
+    let resamples = drawing.resamples.clamp(1, MOST_RESAMPLES);
+    let mut found = [(); N].map(|()| Vec::with_capacity(resamples));
+    let mut drawn = vec![0; clusters];
+    for _ in 0..resamples {
+        drawn.fill_with(|| rng.random_range(0..clusters));
+        for (values, value) in found.iter_mut().zip(figures(&drawn)) {
+            values.extend(Some(value).filter(|value| value.is_finite()));
+        }
+    }
+    let tail = (1.0 - drawing.level.clamp(0.0, 1.0)) / 2.0;
+    found.map(|mut values| {
+        values.sort_unstable_by(f64::total_cmp);
+        let at = |share| if values.is_empty() { f64::NAN } else { quantile(&values, share) };
+        (at(tail), at(1.0 - tail))
     })
 }
 

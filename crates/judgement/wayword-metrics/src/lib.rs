@@ -5,6 +5,8 @@
 //! gives the same figures.
 
 mod bootstrap;
+pub mod captions;
+mod correlation;
 mod mcnemar;
 mod similarity;
 mod study;
@@ -12,6 +14,7 @@ mod trajectory;
 mod words;
 
 pub use bootstrap::{Estimate, clustered_interval, clustered_interval_of};
+pub use correlation::{kendall_tau_b, pearson, spearman};
 pub use mcnemar::McNemar;
 pub use similarity::{Drawing, Said, Similarity, similarity};
 pub use study::{

@@ -1,0 +1,87 @@
+//! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` has them: over the corpus, with the closest reference length.
+
+use super::text::{ORDERS, Text};
+use std::ops::{Add, AddAssign};
+
+/// Keeps quotients of nothing from failing, as in the reference.
+const SMALL: f64 = 1e-9;
+/// The same in a numerator.
+const TINY: f64 = 1e-15;
+
+/// What BLEU counts. Counts of several texts are added, and then divided.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Counts {
+    /// N-grams that a reference has too, by their length.
+    pub correct: [u64; ORDERS],
+    /// N-grams, by their length.
+    pub guessed: [u64; ORDERS],
+    /// Words.
+    pub words: u64,
+    /// Words of the reference whose length is closest.
+    pub reference: u64,
+}
+
+impl Counts {
+    /// Counts a text against its references.
+    #[must_use]
+    pub fn of(text: &Text, references: &[&Text]) -> Self {
+        let mut correct = [0; ORDERS];
+        for (gram, most) in text.grams().iter().zip(most_in(text, references)) {
+            correct[gram.order()] += u64::from(gram.count.min(most));
+        }
+        let lengths = references.iter().map(|reference| (reference.len().abs_diff(text.len()), reference.len()));
+        Self {
+            correct,
+            guessed: std::array::from_fn(|order| text.len().saturating_sub(order) as u64),
+            words: text.len() as u64,
+            reference: lengths.min().map_or(0, |(_, length)| length as u64),
+        }
+    }
+
+    /// BLEU-1 to BLEU-4 of what was counted.
+    #[must_use]
+    pub fn bleu(&self) -> [f64; ORDERS] {
+        let ratio = (self.words as f64 + TINY) / (self.reference as f64 + SMALL);
+        let brevity = if ratio < 1.0 { (1.0 - 1.0 / ratio).exp() } else { 1.0 };
+        let mut product = 1.0;
+        std::array::from_fn(|order| {
+            product *= (self.correct[order] as f64 + TINY) / (self.guessed[order] as f64 + SMALL);
+            f64::powf(product, 1.0 / (order as f64 + 1.0)) * brevity
+        })
+    }
+}
+
+/// For each n-gram of a text, how often the reference has it that has it most often.
+fn most_in(text: &Text, references: &[&Text]) -> Vec<u32> {
+    let mut most = vec![0; text.grams().len()];
+    for reference in references {
+        let mut there = reference.grams().iter().peekable();
+        for (gram, most) in text.grams().iter().zip(&mut most) {
+            while there.next_if(|other| other.key < gram.key).is_some() {}
+            if let Some(same) = there.next_if(|other| other.key == gram.key) {
+                *most = same.count.max(*most);
+            }
+        }
+    }
+    most
+}
+
+impl Add for Counts {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let sum = |a: [u64; ORDERS], b: [u64; ORDERS]| std::array::from_fn(|at| a[at] + b[at]);
+        Self {
+            correct: sum(self.correct, other.correct),
+            guessed: sum(self.guessed, other.guessed),
+            words: self.words + other.words,
+            reference: self.reference + other.reference,
+        }
+    }
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}

@@ -1,0 +1,105 @@
+//! CIDEr-D as `pycocoevalcap`'s `cider_scorer.py` has it, where it is called CIDEr.
+
+use super::text::{Gram, ORDERS, Text};
+use std::{
+    collections::HashMap,
+    hash::{BuildHasherDefault, Hasher},
+};
+
+/// Standard deviation of the penalty for other lengths.
+const SIGMA: f64 = 6.0;
+/// Scores are ten times a cosine.
+const SCALE: f64 = 10.0;
+
+/// In how many items' references each n-gram occurs.
+#[derive(Debug, Default)]
+struct Occurrences(HashMap<u128, u32, BuildHasherDefault<Mixed>>);
+
+/// Mixes a key by two products: the keys are numbers that nobody chooses to collide.
+#[derive(Debug, Default)]
+struct Mixed(u64);
+
+impl Hasher for Mixed {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u128(u128::from(*byte)));
+    }
+
+    fn write_u128(&mut self, key: u128) {
+        let product = (self.0 ^ key as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (key >> 64) as u64;
+        let product = u128::from(product) * 0xd6e8_feb8_6659_fd93;
+        self.0 = (product >> 64) as u64 ^ product as u64;
+    }
+}
+
+impl Occurrences {
+    fn add(&mut self, references: &[&Text]) {
+        let mut keys: Vec<u128> = references.iter().flat_map(|text| text.grams()).map(|gram| gram.key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        for key in keys {
+            *self.0.entry(key).or_default() += 1;
+        }
+    }
+
+    /// The text's n-grams, weighted by how rare they are among `items` items.
+    fn weigh<'a>(&self, text: &'a Text, items: f64) -> Weighed<'a> {
+        let mut squares = [0.0; ORDERS];
+        let weight = |gram: &Gram| {
+            let found = self.0.get(&gram.key).map_or(1.0, |count| f64::from(*count));
+            let weight = f64::from(gram.count) * (items.ln() - found.ln());
+            squares[gram.order()] += weight * weight;
+            weight
+        };
+        let weights = text.grams().iter().map(weight).collect();
+        // The reference counts pairs of words where it means words.
+        let length = text.len().saturating_sub(1) as f64;
+        Weighed { grams: text.grams(), weights, norms: squares.map(f64::sqrt), length }
+    }
+}
+
+struct Weighed<'a> {
+    grams: &'a [Gram],
+    weights: Vec<f64>,
+    norms: [f64; ORDERS],
+    length: f64,
+}
+
+impl Weighed<'_> {
+    /// The sum over lengths of n-grams of the clipped cosines, less for another length.
+    fn like(&self, reference: &Self) -> f64 {
+        let mut products = [0.0; ORDERS];
+        let mut there = reference.grams.iter().zip(&reference.weights).peekable();
+        for (gram, weight) in self.grams.iter().zip(&self.weights) {
+            while there.next_if(|(other, _)| other.key < gram.key).is_some() {}
+            if let Some((_, other)) = there.next_if(|(other, _)| other.key == gram.key) {
+                products[gram.order()] += weight.min(*other) * other;
+            }
+        }
+        let apart = self.length - reference.length;
+        let penalty = (-(apart * apart) / (2.0 * SIGMA * SIGMA)).exp();
+        let cosine = |order: usize| match self.norms[order] * reference.norms[order] {
+            norms if norms > 0.0 => products[order] / norms,
+            _ => products[order],
+        };
+        (0..ORDERS).map(cosine).sum::<f64>() * penalty
+    }
+}
+
+/// CIDEr-D of each text against its references. How rare an n-gram is comes from the references of all these texts, so the
+/// figure of one text depends on the others.
+#[must_use]
+pub fn cider_d(rows: &[super::Row<'_>]) -> Vec<f64> {
+    let mut occurrences = Occurrences::default();
+    rows.iter().for_each(|row| occurrences.add(&row.references));
+    let items = rows.len() as f64;
+    let of_row = |row: &super::Row<'_>| {
+        let text = occurrences.weigh(row.text, items);
+        let alike = row.references.iter().map(|reference| text.like(&occurrences.weigh(reference, items)));
+        alike.sum::<f64>() / ORDERS as f64 / row.references.len().max(1) as f64 * SCALE
+    };
+    rows.iter().map(of_row).collect()
+}

@@ -1,0 +1,153 @@
+//! A set of texts against people's, beside the two anchors without which a figure says nothing.
+
+use super::{Counts, Row, Scores, Text, scores};
+use crate::{Drawing, Estimate, bootstrap::interval_of};
+use rand::Rng;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use wayword_core::rng;
+
+/// What is said about one item.
+#[derive(Debug, Clone)]
+pub struct Described<'a> {
+    /// The item's id: what is drawn for it depends on nothing else.
+    pub id: &'a str,
+    /// The path that it is about: items of one path are not independent.
+    pub cluster: &'a str,
+    /// The text that is judged.
+    pub text: &'a Text,
+    /// People's texts.
+    pub references: Vec<&'a Text>,
+}
+
+/// BLEU, ROUGE-L and CIDEr-D of a set of texts, each with its interval.
+///
+/// Intervals draw paths. BLEU is computed anew from the counts of each draw; CIDEr-D and ROUGE-L are means of the texts' own
+/// figures, where CIDEr-D keeps the weights of n-grams that it has from all references.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Figures {
+    /// BLEU-1 to BLEU-4.
+    pub bleu: [Estimate; 4],
+    /// ROUGE-L.
+    pub rouge_l: Estimate,
+    /// CIDEr-D; often printed times 100.
+    pub cider_d: Estimate,
+}
+
+/// A set of texts beside the two anchors. All but the first are against the same references, people's texts without the
+/// first of each item, over the items that have two or more, so that these three can be compared.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Anchored {
+    /// The texts against all references: what papers print.
+    pub all: Option<Figures>,
+    /// The texts against all references but the first.
+    pub rest: Option<Figures>,
+    /// The first reference against the others: another person's text.
+    pub person: Option<Figures>,
+    /// The first reference of an item of another path, drawn at random, against the others. `None` where there is
+    /// a single path.
+    pub other_path: Option<Figures>,
+    /// Items with a single reference, which are only in the first figures.
+    pub single: usize,
+}
+
+/// The figures of items' texts, and of the anchors.
+#[must_use]
+pub fn anchored(items: &[Described<'_>], drawing: &Drawing) -> Anchored {
+    let items: Vec<&Described<'_>> = items.iter().filter(|item| !item.references.is_empty()).collect();
+    let several: Vec<&Described<'_>> = items.iter().copied().filter(|item| item.references.len() > 1).collect();
+    let figures = |items: &[&Described<'_>], rows: Vec<Row<'_>>| {
+        let clusters: Vec<&str> = items.iter().map(|item| item.cluster).collect();
+        Figures::of(&clusters, &scores(&rows), drawing)
+    };
+    let against_rest = |texts: Vec<&Text>| {
+        let rows =
+            several.iter().zip(texts).map(|(item, text)| Row { text, references: item.references[1..].to_vec() });
+        figures(&several, rows.collect())
+    };
+    let all = items.iter().map(|item| Row { text: item.text, references: item.references.clone() });
+    let strangers = strangers(&several, drawing.seed);
+    Anchored {
+        all: figures(&items, all.collect()),
+        rest: against_rest(several.iter().map(|item| item.text).collect()),
+        person: against_rest(several.iter().map(|item| item.references[0]).collect()),
+        other_path: strangers.and_then(against_rest),
+        single: items.len() - several.len(),
+    }
+}
+
+/// For each item, the first reference of an item of another path.
+fn strangers<'a>(items: &[&Described<'a>], seed: u64) -> Option<Vec<&'a Text>> {
+    let mut of_path: BTreeMap<&str, Vec<&'a Text>> = BTreeMap::new();
+    for item in items {
+        of_path.entry(item.cluster).or_default().push(item.references[0]);
+    }
+    // In the order of their paths, an item of another path is before the first or after the last of its own path.
+    let mut ordered = Vec::with_capacity(items.len());
+    let mut start = BTreeMap::new();
+    for (path, texts) in &of_path {
+        start.insert(*path, ordered.len());
+        ordered.extend(texts.iter().copied());
+    }
+    let draw = |item: &&Described<'a>| {
+        let (first, count) = (start[item.cluster], of_path[item.cluster].len());
+        let others = ordered.len() - count;
+        let at = (others > 0).then(|| rng(seed, &["another path", item.id]).random_range(0..others))?;
+        Some(ordered[if at < first { at } else { at + count }])
+    };
+    items.iter().map(draw).collect()
+}
+
+/// What the texts of one path sum up to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    counts: Counts,
+    rouge_l: f64,
+    cider_d: f64,
+    texts: usize,
+}
+
+impl Sum {
+    fn plus(mut self, other: Self) -> Self {
+        self.counts += other.counts;
+        self.rouge_l += other.rouge_l;
+        self.cider_d += other.cider_d;
+        self.texts += other.texts;
+        self
+    }
+
+    /// BLEU-1 to BLEU-4, ROUGE-L and CIDEr-D.
+    fn figures(&self) -> [f64; 6] {
+        let [one, two, three, four] = self.counts.bleu();
+        [one, two, three, four, self.rouge_l / self.texts as f64, self.cider_d / self.texts as f64]
+    }
+}
+
+impl Figures {
+    /// The figures of texts, each with the path that it is about; `None` without a text.
+    #[must_use]
+    pub fn of(clusters: &[&str], scores: &[Scores], drawing: &Drawing) -> Option<Self> {
+        let mut sums: BTreeMap<&str, Sum> = BTreeMap::new();
+        for (cluster, score) in clusters.iter().zip(scores) {
+            let one = Sum { counts: score.counts, rouge_l: score.rouge_l, cider_d: score.cider_d, texts: 1 };
+            let sum = sums.entry(cluster).or_default();
+            *sum = sum.plus(one);
+        }
+        let sums: Vec<Sum> = sums.into_values().collect();
+        let total = |of: &mut dyn Iterator<Item = Sum>| of.fold(Sum::default(), Sum::plus);
+        let means = total(&mut sums.iter().copied());
+        if means.texts == 0 {
+            return None;
+        }
+        let figures = |drawn: &[usize]| total(&mut drawn.iter().map(|at| sums[*at])).figures();
+        let intervals = interval_of(sums.len(), drawing, figures);
+        let estimate = |at: usize| Estimate {
+            mean: means.figures()[at],
+            low: intervals[at].0,
+            high: intervals[at].1,
+            values: means.texts,
+            clusters: sums.len(),
+        };
+        Some(Self { bleu: std::array::from_fn(estimate), rouge_l: estimate(4), cider_d: estimate(5) })
+    }
+}

@@ -1,0 +1,206 @@
+//! How diverse a set of texts is: how little they repeat themselves and each other.
+
+use super::{
+    bleu::Counts,
+    rouge::rouge_l,
+    text::{ORDERS, Text, order},
+};
+use rand::Rng;
+use serde::Serialize;
+use std::collections::{BTreeMap, HashSet};
+use wayword_core::rng;
+
+/// Words in a window of the type-token ratio.
+const WINDOW: usize = 50;
+/// Pairs of texts that are compared at random.
+const PAIRS: usize = 2_000;
+
+/// How diverse texts are. There are no intervals: all but the last are figures of the whole set, and grow or fall with
+/// its size, so that only sets of about the same size can be compared.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Diversity {
+    /// How many texts.
+    pub texts: usize,
+    /// Mean BLEU-4 of each text against all others (Zhu 2018); lower is more diverse.
+    pub self_bleu_4: Option<f64>,
+    /// Different n-grams over all n-grams, for single words, pairs and triples (Li 2016).
+    pub distinct: [Option<f64>; 3],
+    /// Moving-average type-token ratio (Covington 2010) in windows of 50 words over the texts in their order.
+    pub mattr_50: Option<f64>,
+    /// Mean ROUGE-L of a text against one of another path, over pairs drawn at random; lower is more diverse.
+    pub homogenisation: Option<f64>,
+}
+
+/// How diverse texts are, each with the path that it is about.
+#[must_use]
+pub fn diversity(texts: &[(&str, &Text)], seed: u64) -> Diversity {
+    let all: Vec<&Text> = texts.iter().map(|(_, text)| *text).collect();
+    Diversity {
+        texts: all.len(),
+        self_bleu_4: self_bleu_4(&all),
+        distinct: std::array::from_fn(|order| distinct(&all, order)),
+        mattr_50: mattr(&all),
+        homogenisation: homogenisation(texts, seed),
+    }
+}
+
+/// The two texts that have an n-gram most often: the second counts for the first.
+#[derive(Debug, Clone, Copy, Default)]
+struct Most {
+    first: u32,
+    owner: usize,
+    second: u32,
+}
+
+fn self_bleu_4(texts: &[&Text]) -> Option<f64> {
+    let mut most: BTreeMap<u128, Most> = BTreeMap::new();
+    let mut lengths: BTreeMap<usize, usize> = BTreeMap::new();
+    for (owner, text) in texts.iter().enumerate() {
+        *lengths.entry(text.len()).or_default() += 1;
+        for gram in text.grams() {
+            let of_gram = most.entry(gram.key).or_default();
+            *of_gram = if gram.count > of_gram.first {
+                Most { first: gram.count, owner, second: of_gram.first }
+            } else {
+                Most { second: of_gram.second.max(gram.count), ..*of_gram }
+            };
+        }
+    }
+    let of_text = |(owner, text): (usize, &&Text)| {
+        let mut counts = Counts::of(text, &[]);
+        for gram in text.grams() {
+            let found = most.get(&gram.key).copied().unwrap_or_default();
+            let others = if found.owner == owner { found.second } else { found.first };
+            counts.correct[gram.order()] += u64::from(gram.count.min(others));
+        }
+        counts.reference = closest(&lengths, text.len()) as u64;
+        counts.bleu()[ORDERS - 1]
+    };
+    let scores: Vec<f64> = texts.iter().enumerate().map(of_text).collect();
+    (texts.len() > 1).then(|| scores.iter().sum::<f64>() / scores.len() as f64)
+}
+
+/// The length of another text that is closest; the shorter one of two.
+fn closest(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
+    let shared = lengths.get(&length).is_some_and(|count| *count > 1);
+    let below = lengths.range(..length).next_back();
+    let above = lengths.range(length + 1..).next();
+    let near = [below, above].into_iter().flatten().map(|(other, _)| (other.abs_diff(length), *other)).min();
+    if shared { length } else { near.map_or(0, |(_, other)| other) }
+}
+
+fn distinct(texts: &[&Text], of_order: usize) -> Option<f64> {
+    let grams = texts.iter().flat_map(|text| text.grams()).filter(|gram| order(gram.key) == of_order);
+    let (mut different, mut all) = (HashSet::new(), 0u64);
+    for gram in grams {
+        different.insert(gram.key);
+        all += u64::from(gram.count);
+    }
+    (all > 0).then(|| different.len() as f64 / all as f64)
+}
+
+fn mattr(texts: &[&Text]) -> Option<f64> {
+    let words: Vec<u32> = texts.iter().flat_map(|text| text.words()).copied().collect();
+    let width = WINDOW.min(words.len());
+    if width == 0 {
+        return None;
+    }
+    let mut counts: BTreeMap<u32, usize> = BTreeMap::new();
+    let mut types = 0usize;
+    for (at, word) in words.iter().enumerate() {
+        *counts.entry(*word).or_default() += 1;
+        if at >= width {
+            let left = words[at - width];
+            if let Some(count) = counts.get_mut(&left) {
+                *count -= 1;
+                if *count == 0 {
+                    counts.remove(&left);
+                }
+            }
+        }
+        if at + 1 >= width {
+            types += counts.len();
+        }
+    }
+    Some(types as f64 / (words.len() - width + 1) as f64 / width as f64)
+}
+
+fn homogenisation(texts: &[(&str, &Text)], seed: u64) -> Option<f64> {
+    let paths: HashSet<&str> = texts.iter().map(|(path, _)| *path).collect();
+    if paths.len() < 2 {
+        return None;
+    }
+    let mut rng = rng(seed, &["homogenisation"]);
+    let mut drawn = Vec::with_capacity(PAIRS);
+    while drawn.len() < PAIRS {
+        let [(path, text), (other_path, other)] = [0; 2].map(|_| texts[rng.random_range(0..texts.len())]);
+        if path != other_path {
+            drawn.push(rouge_l(text, &[other]));
+        }
+    }
+    Some(drawn.iter().sum::<f64>() / drawn.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::captions::Vocabulary;
+
+    fn texts(said: &[&str]) -> Vec<Text> {
+        let mut vocabulary = Vocabulary::default();
+        said.iter().map(|text| vocabulary.text(&text.split(' ').collect::<Vec<_>>())).collect()
+    }
+
+    fn of(said: &[&str]) -> Diversity {
+        let texts = texts(said);
+        let names: Vec<String> = (0..texts.len()).map(|at| at.to_string()).collect();
+        let pairs: Vec<(&str, &Text)> = names.iter().map(String::as_str).zip(&texts).collect();
+        diversity(&pairs, 7)
+    }
+
+    #[test]
+    fn the_same_text_again_and_again_is_not_diverse() {
+        let same = of(&["go up the long stairs now"; 3]);
+        assert!((same.self_bleu_4.unwrap() - 1.0).abs() < 1e-6 && (same.homogenisation.unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(same.distinct, [Some(1.0 / 3.0); 3]);
+        assert_eq!(same.mattr_50, Some(6.0 / 18.0));
+    }
+
+    #[test]
+    fn texts_without_a_common_word_are_diverse() {
+        let other = of(&["go up the stairs", "walk past every door"]);
+        assert!(other.self_bleu_4.unwrap() < 1e-6);
+        assert_eq!((other.homogenisation, other.distinct), (Some(0.0), [Some(1.0); 3]));
+    }
+
+    /// The fast way of self-BLEU gives what the definition gives.
+    #[test]
+    fn self_bleu_is_the_mean_against_all_others() {
+        let texts =
+            texts(&["go up the stairs", "go up the long stairs", "go past the the door", "wait by the door up"]);
+        let all: Vec<&Text> = texts.iter().collect();
+        let one = |at: usize| {
+            let others: Vec<&Text> = (0..all.len()).filter(|other| *other != at).map(|other| all[other]).collect();
+            Counts::of(all[at], &others).bleu()[3]
+        };
+        let expected = (0..all.len()).map(one).sum::<f64>() / all.len() as f64;
+        assert!((self_bleu_4(&all).unwrap() - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn windows_move_by_one_word() {
+        let long: Vec<String> = (0..60).map(|n| if n < 10 { "same".to_owned() } else { n.to_string() }).collect();
+        let found = of(&[&long.join(" ")]).mattr_50.unwrap();
+        // Windows from 0 to 10: ten of the same word less one for each step.
+        let expected =
+            (0..=10).map(|start| (if start < 10 { 1 } else { 0 }) + 40 + start).sum::<usize>() as f64 / 11.0 / 50.0;
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+
+    #[test]
+    fn what_cannot_be_measured_is_none() {
+        let nothing = diversity(&[], 0);
+        assert_eq!((nothing.self_bleu_4, nothing.mattr_50, nothing.homogenisation), (None, None, None));
+        assert_eq!(of(&["alone"]).self_bleu_4, None);
+    }
+}

@@ -1,0 +1,69 @@
+//! Figures that compare a text with people's texts, as the field's papers print them: BLEU, ROUGE-L and CIDEr-D, and how
+//! diverse texts are.
+//!
+//! All are those of `pycocoevalcap` to the last digits that it prints. A figure needs its protocol: which tokens
+//! ([`ptb`] or [`split`]), which texts are the references of which, and whether texts were cut off.
+
+mod bleu;
+mod cider;
+mod compared;
+mod diversity;
+mod ptb;
+mod rouge;
+mod split;
+mod text;
+
+pub use bleu::Counts;
+pub use cider::cider_d;
+pub use compared::{Anchored, Described, Figures, anchored};
+pub use diversity::{Diversity, diversity};
+pub use ptb::ptb;
+pub use rouge::rouge_l;
+pub use split::split;
+pub use text::{Text, Vocabulary};
+
+/// A text and the references that it is held against.
+#[derive(Debug, Clone)]
+pub struct Row<'a> {
+    /// The text.
+    pub text: &'a Text,
+    /// What people said of the same; at least one.
+    pub references: Vec<&'a Text>,
+}
+
+/// The figures of one text.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scores {
+    /// What BLEU counts: [`Counts::bleu`] of one text's counts is its own BLEU, that of their sum the corpus's.
+    pub counts: Counts,
+    /// ROUGE-L.
+    pub rouge_l: f64,
+    /// CIDEr-D among the texts that were scored together.
+    pub cider_d: f64,
+}
+
+/// The figures of each text.
+#[must_use]
+pub fn scores(rows: &[Row<'_>]) -> Vec<Scores> {
+    let of_row = |(row, cider_d): (&Row<'_>, f64)| Scores {
+        counts: Counts::of(row.text, &row.references),
+        rouge_l: rouge_l(row.text, &row.references),
+        cider_d,
+    };
+    rows.iter().zip(cider_d(rows)).map(of_row).collect()
+}
+
+/// White space collapsed to single blanks, without any at the ends. Line breaks within a text shift all later texts
+/// in a tokenizer that reads line by line, so this comes before any tokenizer. White space is what Python's `str.split` splits at.
+#[must_use]
+pub fn collapsed(text: &str) -> String {
+    let words = text.split(is_white).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join(" ")
+}
+
+fn is_white(c: char) -> bool {
+    c.is_whitespace() || ('\u{1c}'..='\u{1f}').contains(&c)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,49 @@
+//! Which words keep their full stop. Asked of the reference for every word of up to four letters, and for a list of
+//! longer ones.
+
+/// In any letters.
+const ANY: &str = "\
+al cf co ct dr ft ga jr ky lt md mo mr ms mt ph rd rt sq sr st va vs vt wm \
+adj adm adv ala apr aug ave bhd cie col cos cpl dak dec det drs ens esq est etc ext feb fla fri gen gov hon inc ind \
+jan jos jul jun kan ltd maj mar mme mon mrs neb nev nov oct pfc plc pvt rep rev sen sep seq sfc sgt spc ste \
+sys tel thu tue wed wis wyo \
+alex ariz assn asst atty bldg blvd brig bros capt cmdr colo conn corp dept elec govs insp intl invt kans mich minn \
+mlle mont msgr natl okla penn pres prof reps sens sept supt tenn tues univ wisc \
+assoc attys calif comdr lieut messrs profs supts thurs treas";
+
+/// With a capital, because the words also mean something else.
+const CAPITALISED: &str = "Az La Pa Ark Del Ill Ore Tex Mass Miss Wash";
+
+/// Not in capitals throughout.
+const NOT_IN_CAPITALS: &str = "mfg mtg pte pty ppte ppty ptes ptys";
+
+/// Those that keep it even before one more letter: they often end a sentence.
+const ENDING: &str = "\
+al co ct ga jr ky md mo rd rt sq sr va vt ala apr aug bhd cos dak dec esq est etc ext feb fla fri inc ind jan jul jun \
+kan ltd mar mon neb nev nov oct plc sep seq sys tel thu tue wed wis wyo ariz assn bldg blvd bros colo conn corp intl \
+kans mich minn mont okla penn sept tenn tues univ wisc calif thurs az la pa ark del ill ore tex mass miss wash \
+pte pty ppte ppty ptes ptys";
+
+/// Before a number, in any letters.
+const BEFORE_A_NUMBER: &str = "ca no op pp art fig nos figs prop";
+
+fn has(list: &str, word: &str) -> bool {
+    list.split(' ').any(|one| one.eq_ignore_ascii_case(word))
+}
+
+/// Whether a word keeps its full stop anywhere.
+pub(super) fn is_one(word: &str) -> bool {
+    let is_capitalised = word.starts_with(|c: char| c.is_ascii_uppercase());
+    let is_in_capitals = !word.contains(|c: char| c.is_ascii_lowercase());
+    has(ANY, word) || is_capitalised && has(CAPITALISED, word) || !is_in_capitals && has(NOT_IN_CAPITALS, word)
+}
+
+/// Whether a word keeps its full stop before one more letter.
+pub(super) fn often_ends(word: &str) -> bool {
+    is_one(word) && has(ENDING, word)
+}
+
+/// Whether a word keeps its full stop before a number.
+pub(super) fn is_one_before_a_number(word: &str) -> bool {
+    has(BEFORE_A_NUMBER, word)
+}

@@ -1,0 +1,171 @@
+//! Tokens as `pycocoevalcap` has them: those of Stanford's PTB tokenizer (CoreNLP 3.4.1, `-preserveLines -lowerCase`),
+//! without the punctuation marks that `pycocoevalcap` then leaves out.
+//!
+//! The tokenizer takes the longest of many shapes at each place ([`table`]), so this one does too. It was written from what
+//! the reference answers, not from its source. Where they are known to agree, and to differ, is in `docs/CRITICS.md`.
+
+mod abbreviations;
+mod shape;
+mod table;
+
+use shape::{SOFT_HYPHEN, Shapes};
+use std::sync::LazyLock;
+use table::{ROWS, Taken};
+
+static SHAPES: LazyLock<Shapes> = LazyLock::new(|| Shapes::new(ROWS.iter().map(|row| row.shape)));
+
+/// A blank within a token, as the reference writes it.
+const NO_BREAK: char = '\u{a0}';
+
+/// Takes a text apart. White space is collapsed first ([`super::collapsed`]), because the reference reads texts line by line.
+#[must_use]
+pub fn ptb(text: &str) -> Vec<String> {
+    let text: Vec<char> = super::collapsed(text).chars().collect();
+    let mut tokens = Vec::new();
+    let mut rest = &text[..];
+    while let Some(next) = rest.first() {
+        if *next == ' ' {
+            rest = &rest[1..];
+            continue;
+        }
+        let (taken, length) = first(rest);
+        let (token, after) = rest.split_at(length);
+        tokens.extend(written(taken, token).filter(|token| !LEFT_OUT.contains(&token.as_str())));
+        rest = after;
+    }
+    tokens
+}
+
+/// The token that a text begins with: how its shape is taken, and its length.
+fn first(text: &[char]) -> (Taken, usize) {
+    let found = SHAPES.longest(text, |row, length| length_of(row, text, length) > 0);
+    match found.and_then(|(row, length)| Some((ROWS.get(row)?.taken, length_of(row, text, length)))) {
+        Some((taken, length)) => (taken, length.clamp(1, text.len())),
+        None => (Taken::All, 1),
+    }
+}
+
+/// How long the token is where a shape covers `length` characters; 0 where it is none.
+fn length_of(row: usize, text: &[char], length: usize) -> usize {
+    let (covered, after) = text.split_at(length);
+    let next_is = |wanted: fn(char) -> bool| after.first().is_some_and(|c| wanted(*c));
+    let ends = after.is_empty() || next_is(|c| c == ' ');
+    let only_if = |holds: bool, length: usize| if holds { length } else { 0 };
+    let through_stop = || covered.iter().position(|c| *c == '.').map_or(0, |at| at + 1);
+    let word = || covered.iter().take_while(|c| **c != '.').collect::<String>();
+    match ROWS.get(row).map_or(Taken::All, |row| row.taken) {
+        Taken::All | Taken::Address => length,
+        Taken::First(count) => count,
+        Taken::AllBut(count) => length.saturating_sub(count),
+        Taken::Abbreviation => only_if(abbreviations::is_one(&word()), through_stop()),
+        Taken::BeforeLetter => only_if(abbreviations::often_ends(&word()), through_stop()),
+        Taken::BeforeNumber => only_if(abbreviations::is_one_before_a_number(&word()), through_stop()),
+        Taken::BeforeSentence => only_if(ends, 1),
+        Taken::BeforeBlank => only_if(ends, length),
+        Taken::File => only_if(ends || next_is(|c| matches!(c, '!' | ',' | '.' | '?')), length),
+        Taken::NotBeforeLetter => only_if(!next_is(|c| c.is_ascii_alphabetic()), length),
+        Taken::NotInWord => only_if(!next_is(|c| c.is_ascii_alphanumeric()), length),
+    }
+}
+
+/// Punctuation marks that are left out. `pycocoevalcap` also names brackets, but in capitals, so that it keeps them.
+const LEFT_OUT: [&str; 14] = ["", "''", "'", "``", "`", ".", "?", "!", ",", ":", "-", "--", "...", ";"];
+
+/// A token as the reference writes it; `None` where it writes nothing.
+fn written(taken: Taken, token: &[char]) -> Option<String> {
+    if let [one] = token {
+        return sign(*one).map_or_else(|| Some(one.to_lowercase().collect()), |sign| sign.map(str::to_owned));
+    }
+    let text: String = token.iter().collect();
+    if let Some(sign) = entity(&text.to_ascii_lowercase()) {
+        return Some(sign.to_owned());
+    }
+    if let Some(quotes) = token.iter().map(|c| quote(*c)).collect::<Option<String>>() {
+        return Some(quotes);
+    }
+    if is_run(token, '.') || token.len() < 5 && is_run(token, '-') || is_run(token, SOFT_HYPHEN) {
+        return None;
+    }
+    if matches!(taken, Taken::Address) {
+        return Some(text.to_lowercase().replace(' ', "\u{a0}"));
+    }
+    Some(of_characters(taken, &text.replace("&amp;", "&").replace("&AMP;", "&")))
+}
+
+/// Whether a token is one sign again and again, also with blanks between.
+fn is_run(token: &[char], sign: char) -> bool {
+    token.iter().all(|c| *c == sign || *c == ' ')
+}
+
+fn of_characters(taken: Taken, token: &str) -> String {
+    let is_ending = has_curly_apostrophe(token);
+    let mut text = String::with_capacity(token.len());
+    for c in token.chars() {
+        match c {
+            SOFT_HYPHEN if taken != Taken::File => {}
+            '(' => text.push_str("-lrb-"),
+            ')' => text.push_str("-rrb-"),
+            ' ' => text.push(NO_BREAK),
+            '’' | '\u{92}' if is_ending => text.push('\''),
+            c => text.extend(c.to_lowercase()),
+        }
+    }
+    text
+}
+
+/// Whether a token is one of the endings 's, 'm, 'd, 're, 've, 'll and n't: only there a curly apostrophe becomes a straight one.
+fn has_curly_apostrophe(token: &str) -> bool {
+    ["’s", "’m", "’d", "’re", "’ve", "’ll", "n’t"]
+        .iter()
+        .any(|ending| ending.eq_ignore_ascii_case(&token.replace('\u{92}', "’")))
+}
+
+/// What HTML's names for signs are written as.
+fn entity(text: &str) -> Option<&'static str> {
+    Some(match text {
+        "&amp;" => "&",
+        "&lt;" => "<",
+        "&gt;" => ">",
+        "&quot;" | "&apos;" | "&mdash;" | "&ndash;" | "&nbsp;" => "",
+        _ => return None,
+    })
+}
+
+/// Quotation marks as they are written in a row.
+fn quote(c: char) -> Option<&'static str> {
+    Some(match c {
+        '\'' | '’' | '›' | '\u{92}' => "'",
+        '`' | '‘' | '‹' | '\u{91}' => "`",
+        '«' | '“' | '\u{93}' => "``",
+        '»' | '”' | '\u{94}' => "''",
+        _ => return None,
+    })
+}
+
+/// Signs that are written otherwise, or not at all.
+fn sign(c: char) -> Option<Option<&'static str>> {
+    Some(Some(match c {
+        '(' => "-lrb-",
+        ')' => "-rrb-",
+        '[' => "-lsb-",
+        ']' => "-rsb-",
+        '{' => "-lcb-",
+        '}' => "-rcb-",
+        '½' => "1/2",
+        '¼' => "1/4",
+        '¾' => "3/4",
+        '⅓' => "1/3",
+        '⅔' => "2/3",
+        '£' => "#",
+        '¢' => "cents",
+        '¤' | '€' | '\u{80}' => "$",
+        '"' | '…' | SOFT_HYPHEN | '\u{2010}'..='\u{2015}' => return Some(None),
+        c if quote(c).is_some() => return Some(None),
+        // The reference drops what it cannot read, and says so.
+        c if c.is_control() || c as u32 > 0xffff => return Some(None),
+        _ => return None,
+    }))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,333 @@
+//! Shapes of tokens: small patterns, and the longest match of many at once.
+//!
+//! A pattern is made of characters and of
+//!
+//! - `(a|b)`: one of several; `a?`, `a*`, `a+`: at most one, any number, at least one;
+//! - `[xyz]`, `[a-z]`, `[^xyz]`: a character of a set, or of none;
+//! - `{name}`: a class of characters, see [`Class`];
+//! - `\x`: the character itself.
+//!
+//! A small letter stands for the capital one too. A pattern cannot be wrong: what is left open is closed by its end.
+//! (Each pattern of the table has an example, and a test holds the two against each other.)
+
+use std::{collections::BTreeMap, iter::Peekable, str::Chars};
+
+/// Which characters stand at one place of a token.
+#[derive(Debug, Clone, PartialEq)]
+enum Class {
+    /// This character; a small letter also stands for the capital.
+    Same(char),
+    /// Those in the ranges, or those in none of them.
+    Set { ranges: Vec<(char, char)>, is_without: bool },
+    /// A letter of any script, and what is written within words.
+    Letter,
+    /// A digit of any script.
+    Digit,
+    /// An apostrophe.
+    Apostrophe,
+    /// A single quote of any kind, also as an apostrophe.
+    Quote,
+    /// A letter, or a soft hyphen.
+    SoftLetter,
+    /// A small letter of ASCII.
+    Small,
+    /// What ASCII has not.
+    High,
+    /// This character and no other.
+    Exactly(char),
+}
+
+/// Written within words to say where they may be broken; it is no part of the word.
+pub(super) const SOFT_HYPHEN: char = '\u{ad}';
+
+impl Class {
+    fn named(name: &str) -> Self {
+        match name {
+            "letter" => Self::Letter,
+            "digit" => Self::Digit,
+            "quote" => Self::Quote,
+            "soft" => Self::SoftLetter,
+            "hyphen" => Self::Exactly(SOFT_HYPHEN),
+            "small" => Self::Small,
+            "high" => Self::High,
+            "small n" => Self::Exactly('n'),
+            "small o" => Self::Exactly('o'),
+            "small x" => Self::Exactly('x'),
+            _ => Self::Apostrophe,
+        }
+    }
+
+    fn has(&self, c: char) -> bool {
+        match self {
+            Self::Same(same) => is_same(*same, c),
+            Self::Set { ranges, is_without } => {
+                let small = c.to_ascii_lowercase();
+                ranges.iter().any(|(low, high)| (*low..=*high).contains(&c) || (*low..=*high).contains(&small))
+                    != *is_without
+            }
+            Self::Letter => is_letter(c),
+            Self::Digit => is_digit(c),
+            Self::Quote => matches!(c, '\'' | '`' | '\u{2018}' | '\u{2019}' | '\u{91}' | '\u{92}'),
+            Self::SoftLetter => is_letter(c) || c == SOFT_HYPHEN,
+            Self::Small => c.is_ascii_lowercase(),
+            Self::High => !c.is_ascii(),
+            Self::Exactly(same) => c == *same,
+            Self::Apostrophe => matches!(c, '\'' | '\u{2019}' | '\u{92}'),
+        }
+    }
+}
+
+fn is_same(pattern: char, c: char) -> bool {
+    pattern == c || pattern == c.to_ascii_lowercase()
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_alphabetic()
+}
+
+fn is_digit(c: char) -> bool {
+    c.is_ascii_digit()
+        || (!c.is_ascii() && !c.is_alphabetic() && c.is_numeric() && c.to_digit(36).is_none() && is_decimal(c))
+}
+
+/// Digits of other scripts, which come in runs of ten.
+fn is_decimal(c: char) -> bool {
+    matches!(c, '\u{660}'..='\u{669}' | '\u{6f0}'..='\u{6f9}' | '\u{966}'..='\u{96f}' | '\u{e50}'..='\u{e59}' | '\u{ff10}'..='\u{ff19}')
+}
+
+#[derive(Debug, Clone)]
+enum Part {
+    One(Class),
+    Row(Vec<Part>),
+    Either(Vec<Part>),
+    Repeat { part: Box<Part>, is_needed: bool, is_many: bool },
+}
+
+fn either(chars: &mut Peekable<Chars<'_>>) -> Part {
+    let mut ways = vec![row(chars)];
+    while chars.next_if_eq(&'|').is_some() {
+        ways.push(row(chars));
+    }
+    if ways.len() == 1 { ways.remove(0) } else { Part::Either(ways) }
+}
+
+fn row(chars: &mut Peekable<Chars<'_>>) -> Part {
+    let mut parts = Vec::new();
+    while let Some(c) = chars.next_if(|c| !matches!(c, '|' | ')')) {
+        let part = match c {
+            '(' => {
+                let inner = either(chars);
+                chars.next_if_eq(&')');
+                inner
+            }
+            '[' => Part::One(set(chars)),
+            '{' => Part::One(Class::named(&chars.by_ref().take_while(|c| *c != '}').collect::<String>())),
+            '\\' => Part::One(Class::Same(chars.next().unwrap_or('\\'))),
+            c => Part::One(Class::Same(c)),
+        };
+        parts.push(repeated(part, chars));
+    }
+    Part::Row(parts)
+}
+
+fn repeated(part: Part, chars: &mut Peekable<Chars<'_>>) -> Part {
+    match chars.next_if(|c| matches!(c, '?' | '*' | '+')) {
+        Some(sign) => Part::Repeat { part: Box::new(part), is_needed: sign == '+', is_many: sign != '?' },
+        None => part,
+    }
+}
+
+fn set(chars: &mut Peekable<Chars<'_>>) -> Class {
+    let is_without = chars.next_if_eq(&'^').is_some();
+    let mut ranges = Vec::new();
+    while let Some(c) = chars.next().filter(|c| *c != ']') {
+        let escaped = |c: char, chars: &mut Peekable<Chars<'_>>| if c == '\\' { chars.next().unwrap_or(c) } else { c };
+        let low = escaped(c, chars);
+        let high = match chars.next_if_eq(&'-') {
+            Some(_) => chars.next().map_or(low, |c| escaped(c, chars)),
+            None => low,
+        };
+        ranges.push((low, high));
+    }
+    Class::Set { ranges, is_without }
+}
+
+/// A character of a pattern, and what may come after it.
+#[derive(Debug)]
+struct Place {
+    class: Class,
+    next: Vec<usize>,
+    /// The shape that is complete here.
+    ends: Option<usize>,
+}
+
+/// Many shapes, matched together.
+#[derive(Debug, Default)]
+pub(super) struct Shapes {
+    places: Vec<Place>,
+    /// Where a token may begin, for each ASCII character, and for all others.
+    starts: BTreeMap<char, Vec<usize>>,
+    other_starts: Vec<usize>,
+}
+
+/// How a part begins and ends, and whether it may be left out.
+struct Ends {
+    first: Vec<usize>,
+    last: Vec<usize>,
+    may_be_empty: bool,
+}
+
+impl Shapes {
+    /// The shapes of patterns, numbered in their order.
+    pub(super) fn new<'a>(patterns: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut shapes = Self::default();
+        let mut starts = Vec::new();
+        for (number, pattern) in patterns.into_iter().enumerate() {
+            let ends = shapes.add(&either(&mut pattern.chars().peekable()));
+            for at in ends.last {
+                shapes.places[at].ends = Some(number);
+            }
+            starts.extend(ends.first);
+        }
+        for c in (0..128u8).map(char::from) {
+            let of_c = starts.iter().copied().filter(|at| shapes.places[*at].class.has(c)).collect();
+            shapes.starts.insert(c, of_c);
+        }
+        shapes.other_starts = starts;
+        shapes
+    }
+
+    /// Gives each character of a part its place (Glushkov's construction: no step without a character).
+    fn add(&mut self, part: &Part) -> Ends {
+        match part {
+            Part::One(class) => {
+                self.places.push(Place { class: class.clone(), next: Vec::new(), ends: None });
+                let at = vec![self.places.len() - 1];
+                Ends { first: at.clone(), last: at, may_be_empty: false }
+            }
+            Part::Row(parts) => {
+                parts.iter().fold(Ends { first: Vec::new(), last: Vec::new(), may_be_empty: true }, |before, part| {
+                    self.then(before, part)
+                })
+            }
+            Part::Either(ways) => {
+                let mut all = Ends { first: Vec::new(), last: Vec::new(), may_be_empty: false };
+                for way in ways {
+                    let ends = self.add(way);
+                    all.first.extend(ends.first);
+                    all.last.extend(ends.last);
+                    all.may_be_empty |= ends.may_be_empty;
+                }
+                all
+            }
+            Part::Repeat { part, is_needed, is_many } => {
+                let mut ends = self.add(part);
+                if *is_many {
+                    self.join(&ends.last, &ends.first);
+                }
+                ends.may_be_empty |= !is_needed;
+                ends
+            }
+        }
+    }
+
+    fn then(&mut self, mut before: Ends, part: &Part) -> Ends {
+        let after = self.add(part);
+        self.join(&before.last, &after.first);
+        if before.may_be_empty {
+            before.first.extend(&after.first);
+        }
+        let kept = if after.may_be_empty { before.last } else { Vec::new() };
+        Ends {
+            first: before.first,
+            last: [after.last, kept].concat(),
+            may_be_empty: before.may_be_empty && after.may_be_empty,
+        }
+    }
+
+    fn join(&mut self, from: &[usize], to: &[usize]) {
+        for at in from {
+            let next = &mut self.places[*at].next;
+            for to in to {
+                if !next.contains(to) {
+                    next.push(*to);
+                }
+            }
+        }
+    }
+
+    /// The longest match at the start of a text, of those that `holds` accepts: its shape and its length in characters.
+    /// Of several shapes of one length it is the first.
+    pub(super) fn longest(&self, text: &[char], mut holds: impl FnMut(usize, usize) -> bool) -> Option<(usize, usize)> {
+        let mut found = None;
+        let mut now: Vec<usize> = Vec::new();
+        let mut next: Vec<usize> = Vec::new();
+        for (at, c) in text.iter().enumerate() {
+            next.clear();
+            let mut enter = |to: &[usize]| {
+                for to in to {
+                    if !next.contains(to) && self.places[*to].class.has(*c) {
+                        next.push(*to);
+                    }
+                }
+            };
+            if at == 0 {
+                enter(self.starts.get(c).unwrap_or(&self.other_starts));
+            } else {
+                now.iter().for_each(|from| enter(&self.places[*from].next));
+            }
+            if next.is_empty() {
+                break;
+            }
+            let ending = next.iter().filter_map(|at| self.places[*at].ends).filter(|shape| holds(*shape, at + 1)).min();
+            found = ending.map(|shape| (shape, at + 1)).or(found);
+            std::mem::swap(&mut now, &mut next);
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn longest(patterns: &[&str], text: &str) -> Option<(usize, usize)> {
+        Shapes::new(patterns.iter().copied()).longest(&text.chars().collect::<Vec<_>>(), |_, _| true)
+    }
+
+    #[test]
+    fn the_longest_shape_wins_and_then_the_first() {
+        assert_eq!(longest(&["a", "ab*", "abb"], "abbc"), Some((1, 3)));
+        assert_eq!(longest(&["a", "ab*", "abb"], "ac"), Some((0, 1)));
+        assert_eq!(longest(&["a"], "b"), None);
+        assert_eq!(longest(&["a"], ""), None);
+    }
+
+    #[test]
+    fn patterns_have_alternatives_sets_and_repetitions() {
+        let pattern = ["(x|[a-c]+[^d])?e\\+"];
+        assert_eq!(longest(&pattern, "e+"), Some((0, 2)));
+        assert_eq!(longest(&pattern, "abcaze+."), Some((0, 7)));
+        assert_eq!(longest(&pattern, "ade+"), None);
+        assert_eq!(longest(&["{letter}{digit}{apostrophe}"], "é5’"), Some((0, 3)));
+    }
+
+    #[test]
+    fn small_letters_stand_for_capitals_too() {
+        assert_eq!(longest(&["ab"], "AB"), Some((0, 2)));
+        assert_eq!(longest(&["AB"], "ab"), None);
+        assert_eq!(longest(&["[a-c]"], "B"), Some((0, 1)));
+    }
+
+    #[test]
+    fn what_is_left_open_ends_with_the_pattern() {
+        assert_eq!(longest(&["(a[b"], "ab"), Some((0, 2)));
+        assert_eq!(longest(&["a\\"], "a\\"), Some((0, 2)));
+    }
+
+    #[test]
+    fn a_shape_can_be_refused_by_its_text() {
+        let shapes = Shapes::new(["a+"]);
+        assert_eq!(shapes.longest(&['a'; 5], |_, length| length % 2 == 0), Some((0, 4)));
+    }
+}

@@ -1,0 +1,37 @@
+//! ROUGE-L as `pycocoevalcap`'s `rouge.py` has it.
+
+use super::text::Text;
+
+/// How much more recall counts than precision.
+const BETA: f64 = 1.2;
+
+/// ROUGE-L of a text: from the best precision and the best recall against any reference, which may be two references.
+#[must_use]
+pub fn rouge_l(text: &Text, references: &[&Text]) -> f64 {
+    let mut before = Vec::new();
+    let [mut precision, mut recall] = [0.0, 0.0];
+    for reference in references {
+        let common = longest_common(text.pieces(), reference.pieces(), &mut before) as f64;
+        precision = f64::max(precision, common / text.pieces().len() as f64);
+        recall = f64::max(recall, common / reference.pieces().len() as f64);
+    }
+    if precision == 0.0 || recall == 0.0 {
+        return 0.0;
+    }
+    (1.0 + BETA * BETA) * precision * recall / (recall + BETA * BETA * precision)
+}
+
+/// How long the longest common subsequence is. `row` is memory that may be used again.
+fn longest_common(a: &[u32], b: &[u32], row: &mut Vec<u32>) -> u32 {
+    row.clear();
+    row.resize(b.len(), 0);
+    for word in a {
+        let (mut left, mut above_left) = (0, 0);
+        for (other, here) in b.iter().zip(row.iter_mut()) {
+            let above = *here;
+            *here = if word == other { above_left + 1 } else { above.max(left) };
+            (left, above_left) = (*here, above);
+        }
+    }
+    row.last().copied().unwrap_or(0)
+}

@@ -1,0 +1,54 @@
+//! Tokens as EnvDrop's `split_sentence` has them, which LANA and SAS score with: punctuation marks are tokens too.
+
+/// Takes a text apart into small words and what stands between them. A run of punctuation marks is taken apart into its
+/// marks, unless they are all full stops.
+#[must_use]
+pub fn split(text: &str) -> Vec<String> {
+    let text = super::collapsed(text);
+    let mut tokens = Vec::new();
+    let mut rest = text.as_str();
+    while let Some(first) = rest.chars().next() {
+        let is_word = is_of_word(first);
+        let end = rest.find(|c| is_of_word(c) != is_word).unwrap_or(rest.len());
+        let (run, after) = rest.split_at(end);
+        between(run.trim(), &mut tokens);
+        rest = after;
+    }
+    tokens
+}
+
+fn is_of_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+fn between(run: &str, tokens: &mut Vec<String>) {
+    let is_marks = run.chars().all(|c| c.is_ascii_punctuation()) && run.chars().any(|c| c != '.');
+    if is_marks {
+        tokens.extend(run.chars().map(String::from));
+    } else {
+        // Marks with a blank among them stay together, and the scores then split them at the blank.
+        tokens.extend(run.split(' ').filter(|part| !part.is_empty()).map(str::to_lowercase));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn punctuation_marks_are_tokens() {
+        assert_eq!(split("Turn Left, stop?! Wait..."), ["turn", "left", ",", "stop", "?", "!", "wait", "..."]);
+        assert_eq!(split("it's the left-hand door"), ["it", "'", "s", "the", "left", "-", "hand", "door"]);
+        assert_eq!(split("__ a_b é½"), ["_", "_", "a_b", "é½"]);
+    }
+
+    #[test]
+    fn marks_with_a_blank_among_them_are_split_there_alone() {
+        assert_eq!(split("stop.) (Then"), ["stop", ".)", "(", "then"]);
+    }
+
+    #[test]
+    fn nothing_has_no_tokens() {
+        assert!(split(" \n ").is_empty());
+    }
+}
