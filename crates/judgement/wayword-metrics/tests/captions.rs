@@ -12,7 +12,10 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use wayword_metrics::captions::{Counts, Row, Text, Vocabulary, ptb, scores, split};
 
-const TOKENIZERS: [(&str, fn(&str) -> Vec<String>); 2] = [("ptb", ptb), ("split", split)];
+/// Makes words of a text.
+type Tokenizer = fn(&str) -> Vec<String>;
+
+const TOKENIZERS: [(&str, Tokenizer); 2] = [("ptb", ptb), ("split", split)];
 
 /// How far figures may be from those of the reference, which sums in another order.
 const TOLERANCE: f64 = 1e-9;
