@@ -35,11 +35,14 @@ use wayword_synthesis::{
     writer::RulesWriter,
 };
 
+/// Views by scene, place and gaze.
+type Views = BTreeMap<(SceneId, [i64; 5]), View>;
+
 /// Views of a platform, each drawn once and without its picture, which nobody here looks at.
 #[derive(Clone)]
 struct Drawn {
     platform: Arc<HousePlatform>,
-    views: Arc<Mutex<BTreeMap<(SceneId, [i64; 5]), View>>>,
+    views: Arc<Mutex<Views>>,
 }
 
 impl Platform for Drawn {
