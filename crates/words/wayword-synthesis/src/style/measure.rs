@@ -76,14 +76,13 @@ fn count(text: &str, reading: &Reading, counts: &mut Counts) {
 }
 
 /// What can be said of an object, by table.
-const OF_OBJECT: [&str; 16] = [
+const OF_OBJECT: [&str; 15] = [
     "closest",
     "near",
     "above",
     "under",
     "on",
-    "left",
-    "right",
+    "beside",
     "between",
     "side",
     "row first",
@@ -102,9 +101,14 @@ fn object(task: &str, counts: &mut Counts) {
     // "The top of the table" and "to the left of the sofa" say nothing of a row.
     let parts_of = ["left", "right", "left side", "right side", "top", "bottom", "middle"];
     let whole = parts_of.iter().fold(task.clone(), |text, part| text.replace(&format!(" {part} of "), " "));
+    let to_the_left = task.replace(" right ", " left ");
     let mut told = false;
     for table in OF_OBJECT {
-        let text = if matches!(table, "side" | "middle" | "highest" | "lowest") { &whole } else { &task };
+        let text = match table {
+            "side" | "middle" | "highest" | "lowest" => &whole,
+            "beside" => &to_the_left,
+            _ => &task,
+        };
         if let Some(key) = first_of(known.table(table), text) {
             counts.add(table, key);
             counts.add("told", table);

@@ -147,6 +147,10 @@ fn likelihood(by: &[Distinction], wording: &Wording) -> f64 {
         Distinction::OnSide { .. } => odds("object") * share("side") * 2.0,
         // Near something are most things: of the descriptions that pin a target down, most have it.
         Distinction::Related { relation: Relation::Near, .. } => odds("object") * share("near") * 1.2,
+        // Its share is that of both sides.
+        Distinction::Related { relation: Relation::LeftOf | Relation::RightOf, .. } => {
+            odds("object") * share("beside") * 1.5
+        }
         _ => odds("object") * share(table(by)) * 3.0,
     };
     by.iter().map(one).product()
@@ -160,8 +164,7 @@ fn table(by: &Distinction) -> &'static str {
         Distinction::Related { relation: Relation::Above, .. } => "above",
         Distinction::Related { relation: Relation::Under, .. } => "under",
         Distinction::Related { relation: Relation::On, .. } => "on",
-        Distinction::Related { relation: Relation::LeftOf, .. } => "left",
-        Distinction::Related { relation: Relation::RightOf, .. } => "right",
+        Distinction::Related { relation: Relation::LeftOf | Relation::RightOf, .. } => "beside",
         Distinction::Between { .. } => "between",
         Distinction::OnSide { .. } => "side",
         Distinction::InRow { place: 1, .. } => "row first",
@@ -192,6 +195,9 @@ fn superlative(by: &Distinction, name: &str, wording: &Wording, rng: &mut ChaCha
 fn relation(by: &Distinction, wording: &Wording, rng: &mut ChaCha8Rng) -> Option<String> {
     let way = wording.draw(table(by), rng, |_| true)?;
     Some(match by {
+        Distinction::Related { relation: Relation::RightOf, to } => {
+            way.replace("left", "right").replace("{x}", wording.called(to, rng))
+        }
         Distinction::NextTo { neighbour: to } | Distinction::Related { to, .. } => {
             way.replace("{x}", wording.called(to, rng))
         }

@@ -122,6 +122,9 @@ impl Listing {
 
     fn add_place<'a>(&mut self, eye: DVec3, room: usize, level: Option<u32>, labels: impl Iterator<Item = &'a Label>) {
         let mut sights: Vec<Sight> = Vec::new();
+        // Views come by heading, and nothing may depend on which side is first.
+        let mut labels: Vec<&Label> = labels.collect();
+        labels.sort_by(|a, b| a.object.cmp(&b.object));
         for label in labels {
             let object = self.add_object(label);
             // Views of one panorama may show an object twice.

@@ -17,6 +17,8 @@ const CLEARLY: f64 = 0.7;
 const CLEARLY_M: f64 = 0.3;
 /// What it costs to name a small thing beside the target.
 const SMALL: f64 = 0.9;
+/// Distances that are equal by this are the same: a tenth of a millimetre, per metre.
+const PER_M: f64 = 10_000.0;
 /// Most neighbours of the target that are looked at, the nearest first.
 const MOST_NEIGHBOURS: usize = 8;
 
@@ -32,7 +34,8 @@ impl<'a> Scene<'a> {
         let mut near: Vec<(usize, f64)> =
             seen.filter(tells).filter_map(|at| Some((at, apart(own, self.object(at))?))).collect();
         near.retain(|(_, apart_m)| *apart_m <= NEAR_M);
-        near.sort_by(|a, b| a.1.total_cmp(&b.1));
+        // Of two that are as near, the order of ids decides, whatever the last bits of their places.
+        near.sort_by_key(|(_, apart_m)| (apart_m * PER_M).round() as i64);
         near.truncate(MOST_NEIGHBOURS);
         near
     }
