@@ -79,6 +79,38 @@ fn styles_are_not_mixed_and_must_be_there() {
 }
 
 #[test]
+fn metrics_stand_between_another_person_and_another_path_and_name_their_protocol() {
+    let building = Building::new();
+    let ran = building.wayword(&["similarity", REVERIE, REVERIE, "--metrics", "--resamples", "100", "--json"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found: Value = serde_json::from_str(&ran.out).unwrap();
+    let protocol = &found["protocol"];
+    assert_eq!((&protocol["tokens"], &protocol["references"]), (&"ptb".into(), &"item".into()));
+    assert!(protocol["not_judged"].as_u64() > Some(0), "{protocol}");
+    let figure = |row: &str| found[row]["cider_d"]["mean"].as_f64().unwrap();
+    // A person's own text is among the references of "all", and not among those of the others.
+    assert!(found["all"]["rouge_l"]["mean"].as_f64().unwrap() > 0.999, "{found}");
+    assert_eq!(figure("rest"), figure("person"));
+    assert!(figure("person") > figure("other_path"), "{found}");
+    assert!(found["diversity"]["a"]["homogenisation"].as_f64().is_some());
+}
+
+#[test]
+fn metrics_need_no_model_and_texts_may_be_cut_off() {
+    let building = Building::new();
+    let metrics = |more: &[&str]| {
+        let mut command = building.command(&[&["similarity", REVERIE, REVERIE, "--metrics"], more].concat());
+        common::run(command.env("WAYWORD_OFFLINE", "1"))
+    };
+    let cut = metrics(&["--tokens", "split", "--truncate-characters", "12"]);
+    assert!(cut.out.contains("split tokens; references by item") && cut.out.contains("after 12 characters"), "{cut:?}");
+    assert!(cut.out.contains("another person's text") && cut.out.contains("another path's text"), "{cut:?}");
+    assert_ne!(cut.out, metrics(&["--tokens", "split"]).out);
+    let alone = building.wayword(&["similarity", REVERIE, REVERIE, "--tokens", "split"]);
+    assert!(alone.code == Some(2) && alone.err.contains("--metrics"), "{alone:?}");
+}
+
+#[test]
 fn an_encoder_that_is_not_here_is_told() {
     let building = Building::new();
     let mut command = building.command(&["similarity", REVERIE, REVERIE]);

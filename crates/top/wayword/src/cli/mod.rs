@@ -25,7 +25,7 @@ pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
 pub use robustness::Robustness;
-pub use similarity::{By, Similarity};
+pub use similarity::{By, Similarity, Tokens};
 pub use study::{
     Control, NamedSet, Study, StudyClose, StudyCommand, StudyForget, StudyInvite, StudyMode, StudyNew, StudyPlan,
     StudyReconcile, StudyRecruiter, StudyResults, StudyServe, StudyStatus,

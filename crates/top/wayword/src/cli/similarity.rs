@@ -11,7 +11,9 @@ Examples:
   wayword similarity runs/a runs/b --style r2r --json
   wayword similarity runs/val_seen#r2r R2R_val_seen.json --by path
       Compare texts of different datasets that describe the same paths.
-  wayword similarity runs/a runs/b --style r2r --encoder words      (counts words, needs no model)")]
+  wayword similarity runs/a runs/b --style r2r --encoder words      (counts words, needs no model)
+  wayword similarity runs/val_seen#r2r R2R_val_seen.json --by path --metrics
+      BLEU, ROUGE-L and CIDEr-D as papers print them, beside another person's text and another path's text.")]
 pub struct Similarity {
     /// Instructions: a run folder, or a file in R2R, REVERIE, RxR, VLN-CE or Wayword format. Add #STYLE to take one style.
     #[arg(value_name = "A")]
@@ -29,6 +31,17 @@ pub struct Similarity {
     /// Use only this style of runs and Wayword files.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
+    /// Print BLEU-1 to BLEU-4, ROUGE-L and CIDEr-D of A's texts against B's in place of a cosine, and how diverse the
+    /// texts of both are. Needs no model.
+    #[arg(long)]
+    pub metrics: bool,
+    /// Tokens of the metrics: `ptb` as pycocoevalcap makes them, or `split` as the speakers of R2R do: lower case, words and
+    /// marks apart.
+    #[arg(long, default_value = "ptb", requires = "metrics")]
+    pub tokens: Tokens,
+    /// Cut texts off after so many characters before the metrics, on both sides, as some papers do.
+    #[arg(long, value_name = "N", requires = "metrics", value_parser = clap::value_parser!(u32).range(1..))]
+    pub truncate_characters: Option<u32>,
     /// Number of bootstrap resamples for the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,
@@ -44,4 +57,13 @@ pub enum By {
     Item,
     /// The path: its scene and path id. The target may differ.
     Path,
+}
+
+/// How texts become tokens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Tokens {
+    /// As Stanford's `PTBTokenizer` in pycocoevalcap.
+    Ptb,
+    /// As the speakers of R2R.
+    Split,
 }

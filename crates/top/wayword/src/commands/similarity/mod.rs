@@ -1,5 +1,7 @@
 //! `wayword similarity`.
 
+mod metrics;
+
 use crate::{
     cli::Similarity as Args,
     count::count,
@@ -22,6 +24,11 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     if !a.keys().any(|item| b.contains_key(item)) {
         let problem = format!("{} and {} have no item in common", args.a, args.b);
         return Err(Error::usage(problem, "items are matched by id; --by path matches them by scene and path"));
+    }
+    if args.metrics {
+        let report = metrics::of(args, (&a, &b));
+        output.data(&report, &report);
+        return Ok(Exit::Done);
     }
     let encoder = encoder::encoder(&args.encoder)?;
     let all = a.values().chain(b.values()).flat_map(|item| item.texts.iter().map(String::as_str));
@@ -73,11 +80,16 @@ impl Compared {
     }
 }
 
+fn sides(f: &mut fmt::Formatter<'_>, [a, b]: [&Compared; 2]) -> fmt::Result {
+    for (letter, side) in [("A", a), ("B", b)] {
+        writeln!(f, "{letter}: {}, {}, {}", side.name, count(side.items, "item"), count(side.texts, "text"))?;
+    }
+    Ok(())
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (letter, side) in [("A", &self.a), ("B", &self.b)] {
-            writeln!(f, "{letter}: {}, {}, {}", side.name, count(side.items, "item"), count(side.texts, "text"))?;
-        }
+        sides(f, [&self.a, &self.b])?;
         let is_model = self.encoder != "words";
         writeln!(f, "encoder: {}{}", self.encoder, if is_model { "" } else { " (word counts, no model)" })?;
         let Similarity { figure, same_item, random_pairs, only_in_a, only_in_b, single_in_b } = &self.similarity;
