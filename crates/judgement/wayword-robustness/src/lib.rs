@@ -13,9 +13,10 @@ mod facts;
 pub mod metamorphic;
 pub mod paths;
 pub mod ratio;
+pub mod sets;
 pub mod worlds;
 
 pub use agreement::Agreement;
-pub use change::{Change, ChangeError, Dose, Sees, Setting, Whole};
+pub use change::{Change, ChangeError, Dose, Elsewhere, Sees, Setting, Whole};
 pub use facts::{Facts, Floor};
 pub use paths::ChangedPath;

@@ -7,7 +7,7 @@ mod whole;
 
 pub use dose::Dose;
 pub use parse::ChangeError;
-pub use refusal::{Sees, Setting};
+pub use refusal::{Elsewhere, Sees, Setting};
 pub use whole::Whole;
 
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,7 @@ impl Change {
         [PLATFORM].into_iter().chain(whole).chain(Dose::ALL.into_iter().map(Dose::name))
     }
 
-    /// The changes that are made where nobody says which: mirror, turn, remove, three heights of the camera, three
+    /// The changes that are made where nobody says which: Habitat's reading of the house, mirror, turn, remove, three heights of the camera, three
     /// fields of view, three distances between frames, and three heading noises.
     #[must_use]
     pub fn default_set() -> Vec<Self> {
@@ -48,7 +48,7 @@ impl Change {
         ];
         let whole = [Whole::Mirror, Whole::Turn, Whole::Remove].map(Self::Whole);
         let by = doses.into_iter().flat_map(|(dose, values)| values.map(|value| Self::By(dose, value)));
-        whole.into_iter().chain(by).collect()
+        [Self::Platform("habitat".to_owned())].into_iter().chain(whole).chain(by).collect()
     }
 
     /// Its name, without its dose: "`camera_height_m`".

@@ -38,12 +38,56 @@ impl Change {
     #[must_use]
     pub fn refusal(&self, there: &Setting<'_>) -> Option<String> {
         let why = match self {
-            Self::Platform(_) => (!there.has_poses)
-                .then(|| "the frames have no poses, so nobody knows where they are on another platform".to_owned()),
+            Self::Platform(spec) => Elsewhere::of(spec).refusal(there),
             Self::Whole(whole) => whole.refusal(there),
             Self::By(dose, value) => dose.refusal(*value, there),
         };
         why.map(|why| format!("{self} means nothing here: {why}"))
+    }
+}
+
+/// Another platform as a change names it: `NAME[:DATA][@ADDRESS]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Elsewhere<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its folder or file of data.
+    pub data: Option<&'a str>,
+    /// Its address, where it runs already.
+    pub at: Option<&'a str>,
+}
+
+impl<'a> Elsewhere<'a> {
+    /// Takes apart what was written behind `platform=`.
+    #[must_use]
+    pub fn of(spec: &'a str) -> Self {
+        let (rest, at) = spec.split_once('@').map_or((spec, None), |(rest, at)| (rest, Some(at)));
+        let (name, data) = rest.split_once(':').map_or((rest, None), |(name, data)| (name, Some(data)));
+        Self { name, data, at }
+    }
+
+    fn refusal(&self, there: &Setting<'_>) -> Option<String> {
+        let Self { name, data, at } = *self;
+        let is_house = there.platform == "house";
+        Some(match name {
+            _ if !there.has_poses => {
+                "the frames have no poses, so nobody knows where they are on another platform".to_owned()
+            }
+            _ if name == there.platform && data.is_none() && at.is_none() => "the run was made there".to_owned(),
+            "recording" if there.sees == Sees::Labels => {
+                "a recording has no labels; a scripted eye (--eye) or a model has to see".to_owned()
+            }
+            "recording" if data.is_some() => "the run's own paths are filmed; leave out the data".to_owned(),
+            "recording" if !there.draws => "the platform has no pictures along the paths to film".to_owned(),
+            "habitat" if data.is_none() && !is_house => {
+                "only generated houses are saved for it; name the data of the same scenes, as in habitat:DIR".to_owned()
+            }
+            "process" | "matterport" if data.is_none() => {
+                format!("name its data, with the same scenes and the same axes, as in {name}:PATH")
+            }
+            "house" => "its homes are generated, and none of them is this scene".to_owned(),
+            _ => return None,
+        })
     }
 }
 

@@ -75,7 +75,7 @@ fn the_unchanged_dose_is_in_range_and_has_no_strength() {
 
 #[test]
 fn the_default_set_can_be_made_where_everything_is_drawn() {
-    assert_eq!(Change::default_set().len(), 15);
+    assert_eq!(Change::default_set().len(), 16);
     for change in Change::default_set() {
         assert_eq!(change.refusal(&HOUSE), None);
         assert_eq!(one(&change.to_string()), change);

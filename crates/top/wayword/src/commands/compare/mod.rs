@@ -47,6 +47,8 @@ pub(crate) mod file {
     pub(crate) const WALKS: &str = "walks.jsonl";
     /// The result.
     pub(crate) const COMPARISON: &str = "comparison.json";
+    /// The success of each walk, one line each: what `robustness --compared` reads.
+    pub(crate) const FOLLOWED: &str = "followed.jsonl";
     /// The tables.
     pub(super) const MARKDOWN: &str = "comparison.md";
     pub(super) const LATEX: &str = "comparison.tex";

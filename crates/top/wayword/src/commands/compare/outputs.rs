@@ -9,11 +9,14 @@ use wayword_navigation::{
     comparison::{Comparison, Results, UNREAD},
     walk::Walk,
 };
+use wayword_robustness::sets::Followed;
 
 /// What one reading of the walks gathers.
 #[derive(Default)]
 pub(super) struct Gathered {
     pub(super) results: Results,
+    /// The success of each walk by a text of a set.
+    followed: Vec<Followed>,
     /// By agent and set.
     submissions: BTreeMap<(String, String), Vec<Submitted>>,
 }
@@ -26,10 +29,12 @@ impl Gathered {
     pub(super) fn of(folder: &Path, judge: &Judge<'_>) -> Result<Self, Error> {
         let mut gathered = Self::default();
         judge.each(folder, |walk, score, _: &Demand| {
-            gathered.results.add(&walk, judge.cluster(&walk.item), score);
+            let cluster = judge.cluster(&walk.item);
             if walk.set != UNREAD && !walk.set.contains('~') {
+                gathered.followed.extend(judge.followed(&walk, &score));
                 gathered.submissions.entry((walk.agent.clone(), walk.set.clone())).or_default().push(submitted(&walk));
             }
+            gathered.results.add(&walk, cluster, score);
             Ok(())
         })?;
         Ok(gathered)
@@ -60,6 +65,14 @@ pub(super) fn write(folder: &Path, comparison: &Comparison, gathered: &Gathered)
     write_whole(&folder.join(file::COMPARISON), &json)?;
     write_whole(&folder.join(file::MARKDOWN), &report::comparison::markdown(comparison))?;
     write_whole(&folder.join(file::LATEX), &report::comparison::latex(comparison))?;
+    let mut lines = String::new();
+    for one in &gathered.followed {
+        let line = serde_json::to_string(one)
+            .map_err(|error| Error::usage(format!("a walk cannot be kept: {error}"), "report this as a bug"))?;
+        lines.push_str(&line);
+        lines.push('\n');
+    }
+    write_whole(&folder.join(file::FOLLOWED), &lines)?;
     let submissions = folder.join(file::SUBMISSIONS);
     fs::create_dir_all(&submissions).map_err(Error::io(&submissions, "make the folder"))?;
     for ((agent, set), submitted) in &gathered.submissions {

@@ -9,12 +9,13 @@ use super::{
 };
 use crate::{demands::Demands, episodes, error::Error, run::lines};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
-use wayword_metrics::{Demand, Distances, Rule, Score, Trajectory, score};
+use wayword_metrics::{Demand, Distances, Metric, Rule, Score, Trajectory, score};
 use wayword_navigation::{
     agents::Parameters,
     comparison::{About, Comparison, Results, Set, Walker, compare},
     walk::Walk,
 };
+use wayword_robustness::sets::Followed;
 
 /// Level of the intervals.
 const LEVEL: f64 = 0.95;
@@ -88,6 +89,19 @@ impl<'a> Judge<'a> {
                 score.grounding = None;
             }
             take(walk, score, demand)
+        })
+    }
+
+    /// Whether a walk arrived; `None` where the rule does not say.
+    pub(super) fn followed(&self, walk: &Walk, score: &Score) -> Option<Followed> {
+        Some(Followed {
+            agent: walk.agent.clone(),
+            set: walk.set.clone(),
+            scene: walk.scene.to_string(),
+            path: self.cluster(&walk.item).to_owned(),
+            item: walk.item.clone(),
+            text_index: walk.text_index,
+            success: score.get(Metric::SuccessRate, self.rule)?,
         })
     }
 

@@ -3,10 +3,11 @@
 use super::{
     arm::Arm,
     base::Base,
+    elsewhere::Elsewhere,
     other::{self, Other},
     reader,
     record::{Edit, Line, Told},
-    world,
+    world::{self, World},
 };
 use crate::{
     demands::Demands,
@@ -19,7 +20,7 @@ use crate::{
     team::Team,
 };
 use std::{collections::BTreeMap, slice};
-use wayword_core::{Path, Platform, seed::derive};
+use wayword_core::{Path, Platform, SceneId, seed::derive};
 use wayword_robustness::{
     Change, Whole,
     worlds::{Altered, EyeOf, Labelled, Mirror, QuarterTurn, ScriptedEye, Telling, Thing},
@@ -52,6 +53,8 @@ pub(super) struct InArm<'a> {
     /// The platform in whose space the agent walks, and its distances.
     pub(super) walks: &'a dyn Platform,
     pub(super) demands: Demands<'a>,
+    /// The other platform of the arm, where it has one.
+    pub(super) elsewhere: Option<Elsewhere>,
 }
 
 impl Crew<'_> {
@@ -63,23 +66,32 @@ impl Crew<'_> {
         let arm = within.arm;
         let all_frames = |path: &Path| (0..path.frames.len()).collect();
         match arm {
-            Arm::Unchanged => self.line_of(within, self.team, self.platform, (path.clone(), all_frames(path))),
-            Arm::Again => self.line_of(within, self.again, self.platform, (path.clone(), all_frames(path))),
+            Arm::Unchanged => self.line_of(within, self.team, self.platform, (path.clone(), all_frames(path)), None),
+            Arm::Again => self.line_of(within, self.again, self.platform, (path.clone(), all_frames(path)), None),
             Arm::Other => match other::other(self.platform, path, unchanged, self.seed)? {
                 Some(Other::Told(line)) => Ok(Line { arm: arm.id(), path: path.clone(), ..*line }),
                 Some(Other::New(other)) => {
                     let frames = all_frames(&other);
-                    self.line_of(within, self.team, self.platform, (other, frames))
+                    self.line_of(within, self.team, self.platform, (other, frames), None)
                 }
                 None => Ok(Line::left_out(arm, path, "no other path of its building has as many hops")),
             },
             Arm::Changed(change) if arm.is_edit() => self.edited(within, change, path, unchanged),
-            Arm::Forward | Arm::Changed(_) => match world::of(arm, self.platform, path, self.seed) {
-                Ok(world) => {
-                    self.line_of(within, self.team, world.platform.as_ref(), (world.path, world.base_frame_of))
+            Arm::Forward | Arm::Changed(_) => {
+                let sees_labels = self.eye.is_none() && self.base.settings.roles.models().is_empty();
+                let world = match &within.elsewhere {
+                    Some(elsewhere) => elsewhere.world(path, sees_labels),
+                    None => world::of(arm, self.platform, path, self.seed),
+                };
+                // By what was written of another platform the agent walks in the run's own world.
+                let walked = within.elsewhere.as_ref().map(|_| path);
+                match world {
+                    Ok(World { platform, path, base_frame_of }) => {
+                        self.line_of(within, self.team, platform.as_ref(), (path, base_frame_of), walked)
+                    }
+                    Err(reason) => Ok(Line::left_out(arm, path, &reason)),
                 }
-                Err(reason) => Ok(Line::left_out(arm, path, &reason)),
-            },
+            }
         }
     }
 
@@ -89,14 +101,17 @@ impl Crew<'_> {
         team: &Team,
         platform: &dyn Platform,
         (path, base_frame_of): (Path, Vec<usize>),
+        walked: Option<&Path>,
     ) -> Result<Line, Error> {
         let mut texts = self.texts(within, team, platform, &path, &self.base.styles)?;
+        let walked = walked.unwrap_or(&path);
         if within.arm.is_walked() {
             for told in &mut texts {
                 let Some(text) = &told.text else { continue };
-                told.arrived = reader::arrives(within.walks, &within.demands, &path, text)?;
+                told.arrived = reader::arrives(within.walks, &within.demands, walked, text)?;
             }
         }
+        let path = Path { scene: walked.scene.clone(), ..path };
         Ok(Line { arm: within.arm.id(), path, base_frame_of, texts, left_out: None })
     }
 
@@ -109,7 +124,7 @@ impl Crew<'_> {
         path: &Path,
         styles: &[Measured],
     ) -> Result<Vec<Told>, Error> {
-        let eyed = self.eye.map(|eye| ScriptedEye::new(platform, platform, eye, self.seed).at(within.arm.strength()));
+        let eyed = self.eye.map(|eye| self.eyed(within, platform, &path.scene, eye));
         let platform = eyed.as_ref().map_or(platform, |eyed| eyed as &dyn Platform);
         let again = within.arm == &Arm::Again;
         let seed = self.base.settings.seed;
@@ -120,6 +135,24 @@ impl Crew<'_> {
         let written = write(&item, &settings, world, team, styles, self.threads)?;
         let told = |(outcome, style): (Outcome, &Measured)| Told::of(&style.style.name, outcome);
         Ok(written.outcomes.into_iter().zip(styles).map(told).collect())
+    }
+
+    /// A platform through a scripted eye. On another platform it knows what the run's world has at the same pose.
+    fn eyed<'w>(
+        &'w self,
+        within: &InArm<'_>,
+        platform: &'w dyn Platform,
+        scene: &SceneId,
+        eye: EyeOf,
+    ) -> ScriptedEye<&'w dyn Platform, &'w dyn Platform> {
+        let base_scene = within.elsewhere.as_ref().and_then(|elsewhere| elsewhere.base_scene(scene));
+        let eyed = match base_scene {
+            Some(base) => {
+                ScriptedEye::new(platform, self.platform, eye, self.seed).with_scene(scene.clone(), base.clone())
+            }
+            None => ScriptedEye::new(platform, platform, eye, self.seed),
+        };
+        eyed.at(within.arm.strength())
     }
 
     /// The texts of a path whose world has one thing changed: for each style one that its text tells.
@@ -137,6 +170,7 @@ impl Crew<'_> {
                 scenes: KnownScenes::new(),
                 walks: within.walks,
                 demands: Demands::new(within.walks),
+                elsewhere: None,
             };
             for told in self.texts(&own, self.team, platform.as_ref(), path, slice::from_ref(style))? {
                 texts.push(Told { edit: Some(edit.clone()), ..told });

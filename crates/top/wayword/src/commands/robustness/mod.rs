@@ -2,6 +2,7 @@
 
 mod arm;
 mod base;
+mod elsewhere;
 mod eye;
 mod figures;
 mod making;
@@ -32,6 +33,7 @@ use crate::{
 };
 use arm::Arm;
 use base::Base;
+use elsewhere::Elsewhere;
 use figures::Lines;
 use making::{Crew, InArm, Unchanged};
 use record::{Line, key};
@@ -168,7 +170,8 @@ fn setting<'a>(base: &'a Base, platform: &dyn Platform, has_eye: bool) -> Result
 fn sorted_out(changes: Vec<Change>, setting: &Setting<'_>) -> (Vec<Change>, Vec<Refused>) {
     let (mut made, mut refused) = (Vec::new(), Vec::new());
     for change in changes {
-        match change.refusal(setting).or_else(|| world::refusal(&change)) {
+        let unknown = || if let Change::Platform(spec) = &change { elsewhere::refusal(spec) } else { None };
+        match unknown().or_else(|| change.refusal(setting)) {
             Some(reason) => refused.push(Refused { change: change.to_string(), reason }),
             None => made.push(change),
         }
@@ -224,9 +227,15 @@ fn make(
     for arm in &arms {
         bar.set_message(arm.said());
         let walks = making::walked(arm, world);
-        let within =
-            InArm { arm, scenes: KnownScenes::new(), walks: walks.as_ref(), demands: Demands::new(walks.as_ref()) };
         let left: Vec<&Path> = base.paths.iter().filter(|path| !journal.has(&key(&arm.id(), &path.id))).collect();
+        let elsewhere = match arm {
+            Arm::Changed(Change::Platform(spec)) if !left.is_empty() => {
+                Some(Elsewhere::open(spec, base, platform, out)?)
+            }
+            _ => None,
+        };
+        let (scenes, demands) = (KnownScenes::new(), Demands::new(walks.as_ref()));
+        let within = InArm { arm, scenes, walks: walks.as_ref(), demands, elsewhere };
         bar.inc((base.paths.len() - left.len()) as u64);
         let making = |path: &&Path| {
             interrupt::check()?;

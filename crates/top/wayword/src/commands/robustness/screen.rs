@@ -37,7 +37,17 @@ pub(super) fn listed() -> Vec<Listed> {
         is_default: is_default(dose.name()),
         what: format!("as in {}={}", dose.name(), dose.example()),
     });
-    whole.chain(dosed).collect()
+    let platform = Listed {
+        name: "platform",
+        unit: None,
+        range: None,
+        unchanged: None,
+        is_default: is_default("platform"),
+        what: "The same poses on another platform: habitat and recording are made from generated houses; others as in \
+               process:FILE, tdw@ADDRESS."
+            .to_owned(),
+    };
+    [platform].into_iter().chain(whole).chain(dosed).collect()
 }
 
 /// The same in words.

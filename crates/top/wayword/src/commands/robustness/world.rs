@@ -46,18 +46,9 @@ pub(super) fn of<'a>(arm: &Arm, platform: &'a dyn Platform, path: &Path, seed: u
         Change::By(Dose::Roll, deg) => tilted(platform, path, Tilt::new(0.0, *deg))?,
         other => match pixels(other, seed) {
             Some(pixels) => altered(platform, pixels, path),
-            None => return Err(unmade(other)),
+            None => return Err("the world is not changed".to_owned()),
         },
     })
-}
-
-/// Why a change cannot be made here, whatever the path; `None` where it can.
-pub(super) fn refusal(change: &Change) -> Option<String> {
-    let is_made = match change {
-        Change::Platform(_) => false,
-        Change::Whole(_) | Change::By(..) => true,
-    };
-    (!is_made).then(|| unmade(change))
 }
 
 fn tilted<'a>(platform: &'a dyn Platform, path: &Path, tilt: Result<Tilt, TiltError>) -> Result<World<'a>, String> {
@@ -75,10 +66,6 @@ fn pixels(change: &Change, seed: u64) -> Option<PictureChange> {
         Dose::JpegQuality => PictureChange::Jpeg { quality_percent: value as u8 },
         _ => return None,
     })
-}
-
-fn unmade(change: &Change) -> String {
-    format!("this version of the program cannot make {change} yet")
 }
 
 fn altered<'a, A: Alter + 'a>(platform: &'a dyn Platform, alter: A, path: &Path) -> World<'a> {

@@ -1,0 +1,327 @@
+//! Several sets of texts in the same buildings: how an agent's success varies among them, and whether they rank agents alike.
+
+use crate::ratio::Drawing;
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::rng;
+use wayword_metrics::kendall_tau_b;
+
+/// An agent's success by one text.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Followed {
+    /// The agent.
+    pub agent: String,
+    /// The set of the text.
+    pub set: String,
+    /// The scene of its path.
+    pub scene: String,
+    /// Its path.
+    pub path: String,
+    /// The item.
+    pub item: String,
+    /// Which of the item's texts in that set, from 0.
+    pub text_index: usize,
+    /// 1 where the agent arrived, else 0.
+    pub success: f64,
+}
+
+/// An agent's success rates over several sets.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OfAgent {
+    /// The agent.
+    pub agent: String,
+    /// Its success rate by each set, over the paths that all sets have. A path counts once, with the mean of its texts.
+    pub of_set: BTreeMap<String, f64>,
+    /// The mean over sets.
+    pub mean: f64,
+    /// The standard deviation over sets; `None` of a single set.
+    pub spread: Option<f64>,
+    /// How many paths.
+    pub paths: usize,
+    /// Where success varies.
+    pub shares: Option<Shares>,
+}
+
+/// How much of the variance of success comes from where, as shares that add up to 1, each with its interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Shares {
+    /// From scene to scene.
+    pub scene: [f64; 3],
+    /// From path to path within a scene.
+    pub path: [f64; 3],
+    /// From set to set.
+    pub set: [f64; 3],
+    /// What is left: a path that is harder by one set than by another, and chance.
+    pub rest: [f64; 3],
+}
+
+/// Whether two sets rank agents alike.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ranking {
+    /// One set.
+    pub one: String,
+    /// The other.
+    pub other: String,
+    /// Kendall's tau-b of the agents' success rates; `None` of fewer than two agents, or where a set ties all of them.
+    pub tau_b: Option<f64>,
+    /// Its interval, over whole scenes.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// Of each path of a scene, the sum and the number of its successes by each set.
+type Sums<'a> = BTreeMap<&'a str, BTreeMap<&'a str, Vec<(f64, usize)>>>;
+
+/// Success by path: for each scene its paths, for each path a mean for each set.
+type Table = Vec<Vec<Vec<f64>>>;
+
+/// What several sets say of each agent. Only paths that an agent walked by every set count.
+#[must_use]
+pub fn of_agents(followed: &[Followed], drawing: Drawing) -> Vec<OfAgent> {
+    let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
+    let agents: BTreeSet<&str> = followed.iter().map(|one| one.agent.as_str()).collect();
+    let of_agent = |agent: &str| {
+        let table = table(followed, agent, &sets);
+        let rows: Vec<&Vec<f64>> = table.iter().flatten().collect();
+        let mean = |at: usize| rows.iter().map(|row| row[at]).sum::<f64>() / rows.len().max(1) as f64;
+        let means: Vec<f64> = (0..sets.len()).map(mean).collect();
+        let all = means.iter().sum::<f64>() / means.len().max(1) as f64;
+        let squares: f64 = means.iter().map(|one| (one - all) * (one - all)).sum();
+        OfAgent {
+            agent: agent.to_owned(),
+            of_set: sets.iter().map(|set| (*set).to_owned()).zip(means.iter().copied()).collect(),
+            mean: all,
+            spread: (means.len() > 1).then(|| (squares / (means.len() - 1) as f64).sqrt()),
+            paths: rows.len(),
+            shares: shares(&table, drawing),
+        }
+    };
+    agents.into_iter().map(of_agent).filter(|found| found.paths > 0).collect()
+}
+
+fn table(followed: &[Followed], agent: &str, sets: &[&str]) -> Table {
+    let mut sums = Sums::new();
+    for one in followed.iter().filter(|one| one.agent == agent) {
+        let Ok(at) = sets.binary_search(&one.set.as_str()) else { continue };
+        let row = sums.entry(&one.scene).or_default().entry(&one.path).or_insert_with(|| vec![(0.0, 0); sets.len()]);
+        row[at] = (row[at].0 + one.success, row[at].1 + 1);
+    }
+    let row = |row: Vec<(f64, usize)>| {
+        let mean = |(sum, count): &(f64, usize)| (*count > 0).then(|| sum / *count as f64);
+        row.iter().map(mean).collect::<Option<Vec<f64>>>()
+    };
+    let scenes = sums.into_values().map(|paths| paths.into_values().filter_map(row).collect::<Vec<_>>());
+    scenes.filter(|paths| !paths.is_empty()).collect()
+}
+
+/// The shares of variance with their intervals, where there are two sets, two scenes, and a scene with two paths.
+fn shares(table: &Table, drawing: Drawing) -> Option<Shares> {
+    let all: Vec<&Vec<Vec<f64>>> = table.iter().collect();
+    let found = components(&all)?;
+    let mut dice = rng(drawing.seed, &["shares of variance"]);
+    let mut drawn: [Vec<f64>; 4] = Default::default();
+    for _ in 0..drawing.resamples {
+        let scenes: Vec<&Vec<Vec<f64>>> = (0..all.len()).map(|_| all[dice.random_range(0..all.len())]).collect();
+        for (values, share) in drawn.iter_mut().zip(components(&scenes).into_iter().flatten()) {
+            values.push(share);
+        }
+    }
+    let with_interval = |at: usize| {
+        let [low, high] = quantiles(&drawn[at], drawing.level).unwrap_or([found[at]; 2]);
+        [found[at], low, high]
+    };
+    Some(Shares { scene: with_interval(0), path: with_interval(1), set: with_interval(2), rest: with_interval(3) })
+}
+
+/// The shares of scene, path, set and the rest: a model of random effects in which sets cross paths and paths lie in scenes,
+/// by the method of moments (Searle, Casella, McCulloch, "Variance Components", 1992, ch. 4). A component below 0 counts as 0.
+fn components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
+    let rows: Vec<&Vec<f64>> = scenes.iter().flat_map(|scene| scene.iter()).collect();
+    let (paths, sets) = (rows.len(), rows.first()?.len());
+    if sets < 2 || scenes.len() < 2 || paths == scenes.len() {
+        return None;
+    }
+    let mean = |values: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
+        sum / count.max(1) as f64
+    };
+    let of_row = |row: &[f64]| mean(&mut row.iter().copied());
+    let all = mean(&mut rows.iter().map(|row| of_row(row)));
+    let square = |value: f64| value * value;
+    let (mut of_scenes, mut of_paths) = (0.0, 0.0);
+    for scene in scenes {
+        let here = mean(&mut scene.iter().map(|row| of_row(row)));
+        of_scenes += scene.len() as f64 * square(here - all);
+        of_paths += scene.iter().map(|row| square(of_row(row) - here)).sum::<f64>();
+    }
+    let set_means: Vec<f64> = (0..sets).map(|at| mean(&mut rows.iter().map(|row| row[at]))).collect();
+    let of_sets: f64 = set_means.iter().map(|one| square(one - all)).sum();
+    let rest: f64 = rows
+        .iter()
+        .map(|row| {
+            let here = of_row(row);
+            row.iter().zip(&set_means).map(|(value, set)| square(value - here - set + all)).sum::<f64>()
+        })
+        .sum();
+    let [s, p, c] = [sets, paths, scenes.len()].map(|count| count as f64);
+    let ms_rest = rest / ((s - 1.0) * (p - 1.0));
+    let ms_path = s * of_paths / (p - c);
+    let ms_scene = s * of_scenes / (c - 1.0);
+    let ms_set = p * of_sets / (s - 1.0);
+    // How many paths a scene has, as uneven numbers count.
+    let per_scene = (p - scenes.iter().map(|scene| square(scene.len() as f64)).sum::<f64>() / p) / (c - 1.0);
+    let parts = [(ms_scene - ms_path) / (s * per_scene), (ms_path - ms_rest) / s, (ms_set - ms_rest) / p, ms_rest];
+    let parts = parts.map(|part| f64::max(part, 0.0));
+    let sum: f64 = parts.iter().sum();
+    (sum > 0.0).then(|| parts.map(|part| part / sum))
+}
+
+/// Whether sets rank the agents alike, for each pair of sets, over the paths that every agent walked by every set.
+#[must_use]
+pub fn rankings(followed: &[Followed], drawing: Drawing) -> Vec<Ranking> {
+    let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
+    let agents: BTreeSet<&str> = followed.iter().map(|one| one.agent.as_str()).collect();
+    let tables: Vec<Table> = agents.iter().map(|agent| table(followed, agent, &sets)).collect();
+    let scenes = tables.iter().map(Vec::len).min().unwrap_or(0);
+    let is_whole = tables.iter().all(|table| table.len() == scenes);
+    let tau = |one: usize, other: usize, drawn: &[usize]| {
+        let rate = |table: &Table, set: usize| {
+            let rows: Vec<f64> = drawn.iter().flat_map(|at| table[*at].iter().map(|row| row[set])).collect();
+            rows.iter().sum::<f64>() / rows.len().max(1) as f64
+        };
+        let rates = |set: usize| tables.iter().map(|table| rate(table, set)).collect::<Vec<f64>>();
+        kendall_tau_b(&rates(one), &rates(other))
+    };
+    let pairs = (0..sets.len()).flat_map(|one| (one + 1..sets.len()).map(move |other| (one, other)));
+    let of_pair = |(one, other): (usize, usize)| {
+        let whole: Vec<usize> = (0..scenes).collect();
+        let mut dice = rng(drawing.seed, &["rankings", sets[one], sets[other]]);
+        let draw = |_| (0..scenes).map(|_| dice.random_range(0..scenes)).collect::<Vec<usize>>();
+        let drawn: Vec<Vec<usize>> = (0..drawing.resamples).map(draw).collect();
+        let taus: Vec<f64> = drawn.iter().filter_map(|drawn| tau(one, other, drawn)).collect();
+        let tau_b = tau(one, other, &whole).filter(|_| is_whole);
+        Ranking {
+            one: sets[one].to_owned(),
+            other: sets[other].to_owned(),
+            interval: tau_b.and_then(|_| quantiles(&taus, drawing.level)),
+            tau_b,
+        }
+    };
+    pairs.map(of_pair).collect()
+}
+
+/// The ends of a percentile interval.
+fn quantiles(values: &[f64], level: f64) -> Option<[f64; 2]> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let tail = (1.0 - level) / 2.0;
+    let at = |share: f64| {
+        let at = share * sorted.len().saturating_sub(1) as f64;
+        let (below, above) = (sorted.get(at.floor() as usize)?, sorted.get(at.ceil() as usize)?);
+        Some(below + (above - below) * at.fract())
+    };
+    Some([at(tail)?, at(1.0 - tail)?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::seed::derive;
+
+    const DRAWING: Drawing = Drawing { resamples: 100, level: 0.95, seed: 3 };
+
+    /// A number from -1 to 1 that depends on words alone.
+    fn noise(words: &[&str]) -> f64 {
+        (derive(1, words) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// Success as a sum of effects: of the scene, of the path, of the set, and of chance.
+    fn made(effects: [f64; 4]) -> Vec<Followed> {
+        let mut all = Vec::new();
+        for scene in 0..40 {
+            for path in 0..6 {
+                for set in 0..5 {
+                    let [scene, path, set] = [scene, path, set].map(|number: usize| number.to_string());
+                    let terms = [
+                        noise(&["scene", &scene]),
+                        noise(&["path", &scene, &path]),
+                        noise(&["set", &set]),
+                        noise(&["rest", &scene, &path, &set]),
+                    ];
+                    let success = terms.iter().zip(effects).map(|(term, effect)| term * effect).sum();
+                    let path = format!("{scene}-{path}");
+                    all.push(Followed {
+                        agent: "a".into(),
+                        set,
+                        scene,
+                        item: path.clone(),
+                        text_index: 0,
+                        path,
+                        success,
+                    });
+                }
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn shares_of_variance_are_those_that_the_data_were_made_with() {
+        // Effects of 1, 2 and 1 have variances as 1 to 4 to 1; of five sets no share is known well, so they have none.
+        let shares = of_agents(&made([1.0, 2.0, 0.0, 1.0]), DRAWING)[0].shares.unwrap();
+        let found = [shares.scene[0], shares.path[0], shares.set[0], shares.rest[0]];
+        for (found, expected) in found.iter().zip([1.0 / 6.0, 4.0 / 6.0, 0.0, 1.0 / 6.0]) {
+            assert!((found - expected).abs() < 0.07, "{found} {expected}");
+        }
+        assert!((found.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!(shares.path[1] < shares.path[0] && shares.path[0] < shares.path[2]);
+        let sets = of_agents(&made([0.0, 0.0, 1.0, 0.0]), DRAWING)[0].shares.unwrap();
+        assert!((sets.set[0] - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_balanced_table_has_the_components_that_arithmetic_gives() {
+        // Two scenes of two paths, two sets: mean squares of 8 (scenes), 1 (paths), 2 (sets) and 0 (rest).
+        let scenes = [vec![vec![0.0, 1.0], vec![1.0, 2.0]], vec![vec![2.0, 3.0], vec![3.0, 4.0]]];
+        let all: Vec<&Vec<Vec<f64>>> = scenes.iter().collect();
+        let [scene, path, set, rest] = components(&all).unwrap();
+        let parts = [(8.0 - 1.0) / 4.0, 1.0 / 2.0, 2.0 / 4.0, 0.0];
+        let sum: f64 = parts.iter().sum();
+        for (found, part) in [scene, path, set, rest].iter().zip(parts) {
+            assert!((found - part / sum).abs() < 1e-12, "{found} {part}");
+        }
+    }
+
+    #[test]
+    fn only_paths_of_all_sets_count_and_one_set_has_no_spread() {
+        let mut all = made([1.0, 1.0, 1.0, 1.0]);
+        all.retain(|one| one.path != "0-0" || one.set == "1");
+        assert_eq!(of_agents(&all, DRAWING)[0].paths, 239);
+        all.retain(|one| one.set == "1");
+        let alone = &of_agents(&all, DRAWING)[0];
+        assert_eq!((alone.spread, alone.shares, alone.paths), (None, None, 240));
+    }
+
+    #[test]
+    fn sets_that_rank_agents_alike_have_tau_1() {
+        let mut all = Vec::new();
+        for (agent, rates) in [("good", [0.9, 0.8]), ("fair", [0.5, 0.6]), ("poor", [0.1, 0.7])] {
+            for number in 0..60usize {
+                for (set, rate) in ["one", "two"].iter().zip(rates) {
+                    let path = number.to_string();
+                    let success = f64::from(u8::from(noise(&[&path]).abs() < rate));
+                    let scene = (number % 6).to_string();
+                    let (agent, set) = (agent.to_owned(), (*set).to_owned());
+                    all.push(Followed { agent, set, scene, item: path.clone(), text_index: 0, path, success });
+                }
+            }
+        }
+        let found = &rankings(&all, DRAWING)[0];
+        // By the second set "poor" is better than "fair".
+        assert!((found.tau_b.unwrap() - 1.0 / 3.0).abs() < 1e-12, "{found:?}");
+        all.retain(|one| one.agent != "poor");
+        assert_eq!(rankings(&all, DRAWING)[0].tau_b, Some(1.0));
+        all.retain(|one| one.agent == "good");
+        assert_eq!(rankings(&all, DRAWING)[0].tau_b, None);
+    }
+}

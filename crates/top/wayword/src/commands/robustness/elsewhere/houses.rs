@@ -1,0 +1,32 @@
+//! The generated houses of a run as files that AI Habitat reads.
+
+use crate::{commands::robustness::base::Base, error::Error};
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path as FilePath, PathBuf},
+};
+use wayword_house::{generate, save};
+
+/// Saves each house of a run into a folder of its own, unless it is there. The folder that holds them.
+///
+/// # Errors
+/// When a scene is no house, or its files cannot be written.
+pub(super) fn saved(base: &Base, folder: &FilePath) -> Result<PathBuf, Error> {
+    let scenes: BTreeSet<&str> = base.paths.iter().map(|path| path.scene.as_str()).collect();
+    for scene in scenes {
+        let house = folder.join(scene);
+        if house.is_dir() {
+            continue;
+        }
+        let seed = scene.strip_prefix("house-").and_then(|seed| seed.parse().ok());
+        let seed = seed.ok_or_else(|| Error::usage(format!("scene {scene} is no generated house"), "name data"))?;
+        // A house that was half written when the program was stopped is written again.
+        let unfinished = folder.join(format!(".{scene}"));
+        let _ = fs::remove_dir_all(&unfinished);
+        fs::create_dir_all(&unfinished).map_err(Error::io(&unfinished, "make the folder"))?;
+        save(&generate(seed), &unfinished)?;
+        fs::rename(&unfinished, &house).map_err(Error::io(&house, "name the folder"))?;
+    }
+    Ok(folder.to_owned())
+}
