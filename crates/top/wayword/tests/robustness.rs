@@ -73,5 +73,59 @@ fn what_means_nothing_is_refused_with_the_reason() {
     let unknown = robustness(&building, &["--change", "mirorr"]);
     assert!(unknown.code == Some(1) && unknown.err.contains("mirror"), "{}", unknown.err);
     let list = building.wayword(&["robustness", "--list"]);
-    assert!(list.out.contains("default set: mirror, turn, remove, camera_height_m=0.3"), "{}", list.out);
+    assert!(
+        list.out.contains("default set: platform=habitat, mirror, turn, remove, camera_height_m=0.3"),
+        "{}",
+        list.out
+    );
+}
+
+#[test]
+fn the_same_poses_are_seen_on_other_platforms() {
+    let building = Building::new();
+    let ran = building.wayword(&["generate", "--paths", "1", "--style", "r2r", "--out", "run"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let ran = robustness(&building, &["--change", "platform=habitat", "--change", "platform=recording"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.err.contains("platform=recording means nothing here: a recording has no labels"), "{}", ran.err);
+    let lines: Vec<Value> = texts(&building).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let line = |arm: &str| lines.iter().find(|line| line["arm"] == arm).unwrap();
+    let (before, after) = (line("unchanged"), line("platform-habitat"));
+    assert_eq!(before["path"]["frames"], after["path"]["frames"]);
+    assert!(after["texts"][0]["text"].as_str().is_some_and(|text| !text.is_empty()), "{after}");
+}
+
+#[test]
+fn an_eye_sees_a_recording_of_the_path() {
+    let building = Building::new();
+    let ran = building.wayword(&["generate", "--paths", "1", "--style", "r2r", "--out", "run"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let ran = robustness(&building, &["--eye", "recall=1", "--change", "platform=recording"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let lines: Vec<Value> = texts(&building).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let filmed = lines.iter().find(|line| line["arm"] == "platform-recording").unwrap();
+    let frames = filmed["base_frame_of"].as_array().unwrap();
+    assert!(frames.len() > 2 && filmed["left_out"].is_null(), "{filmed}");
+    assert!(filmed["texts"][0]["mentions"].as_array().is_some_and(|mentions| !mentions.is_empty()), "{filmed}");
+}
+
+#[test]
+fn sets_of_a_comparison_are_held_against_each_other() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let mut all = vec!["compare", "--platform", "matterport", "--data", "data", "--grounder", "labels/lexical"];
+    all.extend(["--episodes", "data/reverie/REVERIE_val_seen.json", "--resamples", "100", "--out", "walked"]);
+    all.extend(["--instructions", "original", "--instructions", "ours=run#reverie"]);
+    let ran = building.wayword(&all);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let ran = building.wayword(&["robustness", "--compared", "walked", "--resamples", "100", "--json"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found: Value = serde_json::from_str(&ran.out).unwrap();
+    assert_eq!(found["sets"], serde_json::json!(["original", "ours"]));
+    let table: Value =
+        serde_json::from_str(&fs::read_to_string(building.path("walked/comparison.json")).unwrap()).unwrap();
+    assert!(found["agents"].as_array().unwrap().len() > 1 && table["rows"].is_array(), "{found}");
+    assert_eq!(found["rankings"][0]["one"], "original");
+    let none = building.wayword(&["robustness", "--compared", "run"]);
+    assert!(none.code == Some(1) && none.err.contains("followed.jsonl"), "{none:?}");
 }

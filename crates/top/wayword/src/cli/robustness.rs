@@ -16,21 +16,29 @@ Examples:
   wayword robustness --run runs/houses --eye recall=0.9,mistakes=0.05 --change blur_px=2,8,20 --out runs/blurred
       Pictures change here, so a scripted eye looks; its recall falls with the dose by a stated formula.
   wayword robustness --run runs/houses --eye guesses-sides --change mirror --out runs/guesses
+  wayword robustness --run runs/houses --change platform=habitat --out runs/elsewhere
+      The same poses on another platform: the houses are saved as glTF and read as Habitat reads them.
+  wayword robustness --compared runs/table
+      Mean and spread of each agent's success over the sets of a comparison, and where it varies.
 
 Give the same command again to continue. With more --change, only these are added. docs/ROBUSTNESS.md says what the figures mean.")]
 pub struct Robustness {
     /// The run whose texts are written again. Its platform, paths, styles and models are used.
-    #[arg(long, value_name = "DIR", required_unless_present = "list")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["list", "compared"])]
     pub run: Option<PathBuf>,
     /// A change, with its doses: NAME or NAME=DOSE,DOSE. Give the flag several times. [default: the default set of --list]
     #[arg(long, value_name = "CHANGE")]
     pub change: Vec<String>,
     /// Folder for the texts, the figures and the page. Give the same command again to continue.
-    #[arg(long, value_name = "DIR", required_unless_present = "list")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["list", "compared"])]
     pub out: Option<PathBuf>,
     /// Show all changes and the default set, and do nothing.
     #[arg(long)]
     pub list: bool,
+    /// A folder that `wayword compare` made: how much success varies among its sets of instructions, and whether they rank
+    /// agents alike. Give the flag several times to join folders; each has its sets.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["run", "change", "out", "eye", "list"])]
+    pub compared: Vec<PathBuf>,
     /// A scripted eye sees instead of labels: recall=SHARE, mistakes=SHARE, falls=SHARE, rises=SHARE, guesses-sides, joined by
     /// commas. It answers from the labels of the same pose; its recall falls and its mistakes rise with the dose.
     #[arg(long, value_name = "EYE")]

@@ -11,6 +11,7 @@ mod reader;
 mod record;
 pub(crate) mod results;
 mod screen;
+mod sets;
 mod world;
 
 use crate::{
@@ -80,6 +81,12 @@ pub(super) fn run(args: &Robustness, output: &Output) -> Result<Exit, Error> {
     let changes = changes(&args.change)?;
     if args.list {
         output.data(&screen::listed(), screen::list());
+        return Ok(Exit::Done);
+    }
+    if !args.compared.is_empty() {
+        let drawing = Drawing { resamples: args.resamples as usize, level: LEVEL, seed: args.seed };
+        let found = sets::of(&args.compared, drawing)?;
+        output.data(&found, &found);
         return Ok(Exit::Done);
     }
     let (Some(folder), Some(out)) = (&args.run, &args.out) else {

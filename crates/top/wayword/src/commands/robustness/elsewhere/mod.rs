@@ -80,7 +80,7 @@ impl Elsewhere {
     pub(super) fn world(&self, path: &Path, sees_labels: bool) -> Result<World<'_>, String> {
         let key = if self.is_film { film::name(path) } else { path.scene.to_string() };
         let scene = self.scene_of.get(&key).cloned().ok_or("it is not there")?;
-        let found = if self.is_film { self.as_filmed(path, scene)? } else { Path { scene, ..path.clone() } };
+        let found = if self.is_film { self.as_filmed(path, &scene)? } else { Path { scene, ..path.clone() } };
         let base_frame_of = found.frames.iter().map(|frame| nearest(path, frame)).collect();
         let platform: Box<dyn Platform + '_> = match sees_labels {
             true => Box::new(Remembering::labels_of(self.platform.as_ref())),
@@ -95,9 +95,9 @@ impl Elsewhere {
     }
 
     /// A path as its recording has it.
-    fn as_filmed(&self, path: &Path, scene: SceneId) -> Result<Path, String> {
+    fn as_filmed(&self, path: &Path, scene: &SceneId) -> Result<Path, String> {
         let whole = PathRequest { hops: 1..=usize::MAX, length_m: 0.0..=f64::MAX };
-        let found = self.platform.sample_path(&scene, &whole, 0).map_err(|error| error.to_string())?;
+        let found = self.platform.sample_path(scene, &whole, 0).map_err(|error| error.to_string())?;
         Ok(Path { id: path.id.clone(), target: path.target.clone(), ..found })
     }
 }
