@@ -7,6 +7,7 @@ mod corrupt;
 mod corrupt_people;
 mod corruptions;
 mod coverage;
+mod critics;
 mod detector;
 mod eye;
 mod fit_evidence;
@@ -74,6 +75,8 @@ enum What {
     FitFollower(fit_follower::Flags),
     /// Count the words and clauses of datasets' texts that the reader understands, and show those that it does not.
     Coverage(coverage::Flags),
+    /// Correlate critics of texts (BLEU-4, ROUGE-L, CIDEr-D against people's) with the success of agents that walked by them.
+    Critics(critics::Flags),
     /// Show instructions of each style, picked by seed, beside what people wrote.
     Sample {
         /// Run folder.
@@ -234,6 +237,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::StudyCoverage(flags) => study_coverage::measure(&flags, output),
         What::FitFollower(flags) => fit_follower::measure(&flags, output),
         What::Coverage(flags) => coverage::measure(&flags, output),
+        What::Critics(flags) => critics::show(&flags, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
         What::Calls { calls, latency_ms, concurrency } => calls::measure(calls, latency_ms, concurrency, output),
         What::Pictures { calls } => calls::pictures(calls, output),

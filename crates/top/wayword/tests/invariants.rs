@@ -145,6 +145,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-metrics",
                 "wayword-navigation",
                 "wayword-remote",
+                "wayword-robustness",
                 "wayword-synthesis",
                 "wayword-testkit",
                 "wayword-world",
