@@ -25,6 +25,10 @@ pub struct Log {
     pub faults: BTreeMap<Fault, u64>,
     /// Most requests that were in work at the same time.
     pub most_at_once: u64,
+    /// The longest chain of requests each of which came after the one before was done with: so many times somebody waited,
+    /// however many were in work at a time. It does not depend on how fast the machine is, as long as requests that are sent
+    /// together come within the latency.
+    pub rounds: u64,
     /// Each distinct request (its dialect, model and body), by hash.
     pub bodies: BTreeMap<u64, Body>,
     pub(super) at_once: u64,
@@ -60,11 +64,19 @@ impl Log {
         self.faults.values().sum()
     }
 
-    pub(super) fn receive(&mut self, request: u64) {
+    /// The round of a request that came.
+    pub(super) fn receive(&mut self, request: u64) -> u64 {
         self.received += 1;
         self.at_once += 1;
         self.most_at_once = self.most_at_once.max(self.at_once);
         self.bodies.entry(request).or_default().received += 1;
+        self.rounds + 1
+    }
+
+    /// A request of a round is done with.
+    pub(super) fn finish(&mut self, round: u64) {
+        self.at_once -= 1;
+        self.rounds = self.rounds.max(round);
     }
 
     /// How many requests were let in before this one, and how many of them were equal to it.

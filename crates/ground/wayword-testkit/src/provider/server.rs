@@ -123,16 +123,16 @@ impl Shared {
     async fn worked(self: Arc<Self>, arrival: Arrival) -> Response {
         let dialect = arrival.dialect;
         let work = tokio::spawn(async move {
-            let response = self.answered(&arrival).await;
-            self.tally().at_once -= 1;
+            let request = arrival.hash();
+            let round = self.tally().receive(request);
+            let response = self.answered(&arrival, request).await;
+            self.tally().finish(round);
             response
         });
         work.await.unwrap_or_else(|_| dialect.refuse(Wrong::Server, "The script panicked."))
     }
 
-    async fn answered(&self, arrival: &Arrival) -> Response {
-        let request = arrival.hash();
-        self.tally().receive(request);
+    async fn answered(&self, arrival: &Arrival, request: u64) -> Response {
         let (index, nth) = match self.admitted(arrival, request) {
             Ok(before) => before,
             Err(refusal) => return *refusal,
