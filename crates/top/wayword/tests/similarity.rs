@@ -110,6 +110,56 @@ fn metrics_need_no_model_and_texts_may_be_cut_off() {
     assert!(alone.code == Some(2) && alone.err.contains("--metrics"), "{alone:?}");
 }
 
+/// A stand-in for Java: it answers as METEOR does, with half for each text and a quarter for all, or as SPICE does.
+#[cfg(unix)]
+const JAVA: &str = r#"#!/bin/sh
+for word in "$@"; do
+  if [ "$word" = -stdio ]; then
+    count=0
+    while read -r line; do
+      case "$line" in
+        SCORE*) count=$((count + 1)); echo "1.0 2.0" ;;
+        EVAL*) while [ $count -gt 0 ]; do echo 0.5; count=$((count - 1)); done; echo 0.25 ;;
+      esac
+    done
+    exit 0
+  fi
+done
+[ "$1" = -Xmx8G ] || exit 3
+count=$(grep -o image_id "$4" | wc -l)
+echo "[" > "$8"
+while [ $count -gt 1 ]; do echo '{"scores":{"All":{"f":0.75}}},' >> "$8"; count=$((count - 1)); done
+echo '{"scores":{"All":{"f":0.75}}}]' >> "$8"
+"#;
+
+#[cfg(unix)]
+#[test]
+fn meteor_and_spice_are_asked_in_java() {
+    use std::os::unix::fs::PermissionsExt;
+    let building = Building::new();
+    let java = building.path("java.sh");
+    fs::write(&java, JAVA).unwrap();
+    fs::set_permissions(&java, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::write(building.path("any.jar"), "").unwrap();
+    let java = java.to_string_lossy().into_owned();
+    let asked =
+        |more: &[&str]| building.wayword(&[&["similarity", REVERIE, REVERIE, "--metrics", "--json"], more].concat());
+    let ran = asked(&["--meteor-jar", "any.jar", "--spice-jar", "any.jar", "--java", &java]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let found: Value = serde_json::from_str(&ran.out).unwrap();
+    let expected = serde_json::json!([
+        { "name": "METEOR", "all": 0.25, "rest": 0.25, "person": 0.25, "other_path": 0.25 },
+        { "name": "SPICE", "all": 0.75, "rest": 0.75, "person": 0.75, "other_path": 0.75 },
+    ]);
+    assert_eq!(found["outside"], expected);
+    let missing = asked(&["--meteor-jar", "none.jar"]);
+    assert!(missing.code == Some(1) && missing.err.contains("none.jar: there is no such file"), "{missing:?}");
+    let silent = asked(&["--meteor-jar", "any.jar", "--java", "true"]);
+    assert!(silent.code == Some(1) && silent.err.contains("did not answer as METEOR does"), "{silent:?}");
+    let absent = asked(&["--spice-jar", "any.jar", "--java", "no-such-java"]);
+    assert!(absent.code == Some(1) && absent.err.contains("--java PROGRAM"), "{absent:?}");
+}
+
 #[test]
 fn an_encoder_that_is_not_here_is_told() {
     let building = Building::new();

@@ -51,28 +51,57 @@ pub struct Anchored {
     pub single: usize,
 }
 
+/// The texts of items, and of the anchors, each with the references that it is held against.
+#[derive(Debug, Clone)]
+pub struct Sets<'a> {
+    /// The texts against all references.
+    pub all: Vec<Row<'a>>,
+    /// The texts against all references but the first, of the items that have several. The rows of the anchors are of the same
+    /// items, in the same order.
+    pub rest: Vec<Row<'a>>,
+    /// The first reference against the others.
+    pub person: Vec<Row<'a>>,
+    /// The first reference of another path against the others. `None` where there is a single path.
+    pub other_path: Option<Vec<Row<'a>>>,
+    /// The path of each item.
+    clusters: Vec<&'a str>,
+    /// The path of each item that has several references.
+    clusters_of_several: Vec<&'a str>,
+}
+
+impl<'a> Sets<'a> {
+    /// The sets of items. Other paths are drawn by the seed.
+    #[must_use]
+    pub fn of(items: &[Described<'a>], seed: u64) -> Self {
+        let items: Vec<&Described<'a>> = items.iter().filter(|item| !item.references.is_empty()).collect();
+        let several: Vec<&Described<'a>> = items.iter().copied().filter(|item| item.references.len() > 1).collect();
+        let against_rest = |texts: Vec<&'a Text>| -> Vec<Row<'a>> {
+            let rows = several.iter().zip(texts);
+            rows.map(|(item, text)| Row { text, references: item.references[1..].to_vec() }).collect()
+        };
+        let all = items.iter().map(|item| Row { text: item.text, references: item.references.clone() });
+        let clusters = |items: &[&Described<'a>]| items.iter().map(|item| item.cluster).collect();
+        Self {
+            all: all.collect(),
+            rest: against_rest(several.iter().map(|item| item.text).collect()),
+            person: against_rest(several.iter().map(|item| item.references[0]).collect()),
+            other_path: strangers(&several, seed).map(against_rest),
+            clusters: clusters(&items),
+            clusters_of_several: clusters(&several),
+        }
+    }
+}
+
 /// The figures of items' texts, and of the anchors.
 #[must_use]
-pub fn anchored(items: &[Described<'_>], drawing: &Drawing) -> Anchored {
-    let items: Vec<&Described<'_>> = items.iter().filter(|item| !item.references.is_empty()).collect();
-    let several: Vec<&Described<'_>> = items.iter().copied().filter(|item| item.references.len() > 1).collect();
-    let figures = |items: &[&Described<'_>], rows: Vec<Row<'_>>| {
-        let clusters: Vec<&str> = items.iter().map(|item| item.cluster).collect();
-        Figures::of(&clusters, &scores(&rows), drawing)
-    };
-    let against_rest = |texts: Vec<&Text>| {
-        let rows =
-            several.iter().zip(texts).map(|(item, text)| Row { text, references: item.references[1..].to_vec() });
-        figures(&several, rows.collect())
-    };
-    let all = items.iter().map(|item| Row { text: item.text, references: item.references.clone() });
-    let strangers = strangers(&several, drawing.seed);
+pub fn anchored(sets: &Sets<'_>, drawing: &Drawing) -> Anchored {
+    let of_several = |rows: &[Row<'_>]| Figures::of(&sets.clusters_of_several, &scores(rows), drawing);
     Anchored {
-        all: figures(&items, all.collect()),
-        rest: against_rest(several.iter().map(|item| item.text).collect()),
-        person: against_rest(several.iter().map(|item| item.references[0]).collect()),
-        other_path: strangers.and_then(against_rest),
-        single: items.len() - several.len(),
+        all: Figures::of(&sets.clusters, &scores(&sets.all), drawing),
+        rest: of_several(&sets.rest),
+        person: of_several(&sets.person),
+        other_path: sets.other_path.as_deref().and_then(of_several),
+        single: sets.all.len() - sets.rest.len(),
     }
 }
 

@@ -59,23 +59,23 @@ fn anchors_are_over_the_same_references() {
         vec![text(said.clone()), text(format!("walk{n} past door{n} and stop there")), text(said)]
     };
     let texts: Vec<Vec<Text>> = (0..20).map(&mut of).collect();
-    let found = anchored(&described(&ids, &texts), &DRAWING);
+    let found = anchored(&Sets::of(&described(&ids, &texts), DRAWING.seed), &DRAWING);
     let [rest, person, other] = [&found.rest, &found.person, &found.other_path].map(|of| of.as_ref().unwrap());
     assert!(rest.cider_d.mean > 9.9 && person.cider_d.mean < rest.cider_d.mean);
     assert!(other.cider_d.mean < person.cider_d.mean && other.bleu[0].mean < person.bleu[0].mean);
     assert!(person.bleu[3].low <= person.bleu[3].mean && person.bleu[3].mean <= person.bleu[3].high);
     assert_eq!((person.rouge_l.values, person.rouge_l.clusters, found.single), (20, 20, 0));
-    assert_eq!(found, anchored(&described(&ids, &texts), &DRAWING));
+    assert_eq!(found, anchored(&Sets::of(&described(&ids, &texts), DRAWING.seed), &DRAWING));
 }
 
 #[test]
 fn where_there_is_nothing_to_compare_there_is_no_figure() {
     let ids = ["a".to_owned()];
     let alone = vec![texts(&["go up", "go down"])];
-    let found = anchored(&described(&ids, &alone), &DRAWING);
+    let found = anchored(&Sets::of(&described(&ids, &alone), DRAWING.seed), &DRAWING);
     assert!(found.all.is_some() && found.rest.is_none() && found.person.is_none() && found.other_path.is_none());
     assert_eq!(found.single, 1);
     let several = vec![texts(&["go up", "go down", "go on"])];
-    assert!(anchored(&described(&ids, &several), &DRAWING).other_path.is_none());
-    assert!(anchored(&[], &DRAWING).all.is_none());
+    assert!(anchored(&Sets::of(&described(&ids, &several), DRAWING.seed), &DRAWING).other_path.is_none());
+    assert!(anchored(&Sets::of(&[], DRAWING.seed), &DRAWING).all.is_none());
 }

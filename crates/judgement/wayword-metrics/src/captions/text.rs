@@ -48,6 +48,17 @@ pub(super) fn order(key: u128) -> usize {
 }
 
 impl Vocabulary {
+    /// The words by their numbers.
+    #[must_use]
+    pub fn words(&self) -> Vec<&str> {
+        let most = self.numbers.values().max().copied().unwrap_or_default();
+        let mut words = vec![""; most as usize + 1];
+        for (word, number) in &self.numbers {
+            words[*number as usize] = word;
+        }
+        words
+    }
+
     /// A text of tokens.
     ///
     /// The reference keeps tokens as one line and splits it again: ROUGE-L at blanks, the others at white space of
@@ -87,6 +98,13 @@ impl Text {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.words.is_empty()
+    }
+
+    /// Its tokens with blanks between. `words` is what [`Vocabulary::words`] gives.
+    #[must_use]
+    pub fn line(&self, words: &[&str]) -> String {
+        let of = |number: &u32| words.get(*number as usize).copied().unwrap_or_default();
+        self.pieces().iter().map(of).collect::<Vec<_>>().join(" ")
     }
 
     pub(super) fn words(&self) -> &[u32] {
@@ -129,6 +147,13 @@ mod tests {
     fn a_no_break_space_parts_words_and_not_pieces() {
         let text = Vocabulary::default().text(&["the", "1\u{a0}1/2"]);
         assert_eq!((text.words().len(), text.pieces().len()), (3, 2));
+    }
+
+    #[test]
+    fn a_text_is_the_line_of_its_tokens() {
+        let mut vocabulary = Vocabulary::default();
+        let texts = [vocabulary.text(&["turn", "left"]), vocabulary.text(&["left", "1\u{a0}1/2"])];
+        assert_eq!(texts.map(|text| text.line(&vocabulary.words())), ["turn left", "left 1\u{a0}1/2"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `wayword similarity` as the user types it.
 
 use clap::{Args, ValueEnum};
+use std::path::PathBuf;
 
 /// `wayword similarity`.
 #[derive(Debug, Args)]
@@ -42,6 +43,15 @@ pub struct Similarity {
     /// Cut texts off after so many characters before the metrics, on both sides, as some papers do.
     #[arg(long, value_name = "N", requires = "metrics", value_parser = clap::value_parser!(u32).range(1..))]
     pub truncate_characters: Option<u32>,
+    /// Run METEOR, too: meteor-1.5.jar, which the program does not bring.
+    #[arg(long, value_name = "FILE", requires = "metrics")]
+    pub meteor_jar: Option<PathBuf>,
+    /// Run SPICE, too: spice-1.0.jar with its models. Unverified, because we could not get its models.
+    #[arg(long, value_name = "FILE", requires = "metrics")]
+    pub spice_jar: Option<PathBuf>,
+    /// The Java that runs them.
+    #[arg(long, value_name = "PROGRAM", default_value = "java", requires = "metrics")]
+    pub java: PathBuf,
     /// Number of bootstrap resamples for the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,

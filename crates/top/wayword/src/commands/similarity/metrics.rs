@@ -1,16 +1,23 @@
 //! `wayword similarity --metrics`: the text metrics of papers, with their protocol and their anchors.
 
-use super::{Compared, LEVEL, sides};
+use super::{
+    Compared, LEVEL,
+    java::{self, Outside},
+    sides,
+};
 use crate::{
     cli::{By, Similarity as Args, Tokens},
     count::count,
+    error::Error,
     texts::{Items, Texts},
 };
 use serde::Serialize;
 use std::fmt;
 use wayword_metrics::{
     Drawing, Estimate,
-    captions::{Anchored, Described, Diversity, Figures, Text, Vocabulary, anchored, collapsed, diversity, ptb, split},
+    captions::{
+        Anchored, Described, Diversity, Figures, Sets, Text, Vocabulary, anchored, collapsed, diversity, ptb, split,
+    },
 };
 
 /// A set of texts against people's.
@@ -23,6 +30,9 @@ pub(super) struct Report {
     level: f64,
     #[serde(flatten)]
     figures: Anchored,
+    /// METEOR and SPICE, where the user has them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    outside: Vec<Outside>,
     diversity: Sides,
 }
 
@@ -76,7 +86,7 @@ impl Reader<'_> {
 }
 
 /// The metrics of A's texts against B's.
-pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Report {
+pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Result<Report, Error> {
     let mut reader = Reader { args, vocabulary: Vocabulary::default() };
     let (judged, references) = (reader.items(a), reader.items(b));
     let in_b = |id: &str| references.binary_search_by_key(&id, |(other, ..)| other).ok().map(|at| &references[at]);
@@ -93,7 +103,8 @@ pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Report {
             items.iter().flat_map(|(_, path, texts)| texts.iter().map(move |text| (*path, text))).collect();
         diversity(&all, args.seed)
     };
-    Report {
+    let sets = Sets::of(&items, args.seed);
+    Ok(Report {
         protocol: Protocol {
             tokens: if args.tokens == Tokens::Ptb { "ptb" } else { "split" },
             references: if args.by == By::Path { "path" } else { "item" },
@@ -105,9 +116,10 @@ pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Report {
         a: Compared::of(&args.a, a),
         b: Compared::of(&args.b, b),
         level: LEVEL,
-        figures: anchored(&items, &drawing),
+        figures: anchored(&sets, &drawing),
+        outside: java::of(args, &sets, &reader.vocabulary)?,
         diversity: Sides { a: told(&judged), b: told(&references) },
-    }
+    })
 }
 
 impl fmt::Display for Report {
@@ -127,6 +139,11 @@ impl fmt::Display for Report {
         if let Some(figures) = all {
             let [one, two, three, _] = figures.bleu.map(|bleu| percent(&bleu));
             writeln!(f, "A against all of B's texts: BLEU-1 {one}, BLEU-2 {two}, BLEU-3 {three}")?;
+        }
+        for Outside { name, all, rest, person, other_path } in &self.outside {
+            let [all, rest, person, other] = [all, rest, person, other_path]
+                .map(|of| of.map_or_else(|| "-".to_owned(), |value| format!("{:.1}", value * 100.0)));
+            writeln!(f, "{name}: A {all}; but the first {rest}, another person {person}, another path {other}")?;
         }
         writeln!(f, "\n{:<44} {:>8} {:>8}", "diversity", "A", "B")?;
         let [a, b] = [&self.diversity.a, &self.diversity.b].map(of_diversity);

@@ -1,5 +1,6 @@
 //! `wayword similarity`.
 
+mod java;
 mod metrics;
 
 use crate::{
@@ -26,7 +27,7 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
         return Err(Error::usage(problem, "items are matched by id; --by path matches them by scene and path"));
     }
     if args.metrics {
-        let report = metrics::of(args, (&a, &b));
+        let report = metrics::of(args, (&a, &b))?;
         output.data(&report, &report);
         return Ok(Exit::Done);
     }
