@@ -51,12 +51,10 @@ impl Vocabulary {
     /// The words by their numbers.
     #[must_use]
     pub fn words(&self) -> Vec<&str> {
-        let most = self.numbers.values().max().copied().unwrap_or_default();
-        let mut words = vec![""; most as usize + 1];
-        for (word, number) in &self.numbers {
-            words[*number as usize] = word;
-        }
-        words
+        let mut words: Vec<(u32, &str)> = self.numbers.iter().map(|(word, number)| (*number, word.as_str())).collect();
+        words.push((NOTHING, ""));
+        words.sort_unstable();
+        words.into_iter().map(|(_, word)| word).collect()
     }
 
     /// A text of tokens.
