@@ -226,13 +226,12 @@ fn quantiles(values: &[f64], level: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use wayword_core::seed::derive;
 
     const DRAWING: Drawing = Drawing { resamples: 100, level: 0.95, seed: 3 };
 
     /// A number from -1 to 1 that depends on words alone.
     fn noise(words: &[&str]) -> f64 {
-        (derive(1, words) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        rng(1, words).random_range(-1.0..1.0)
     }
 
     /// Success as a sum of effects: of the scene, of the path, of the set, and of chance.

@@ -170,8 +170,9 @@ mod tests {
         let scenes: Vec<String> = (0..8).map(|number| number.to_string()).collect();
         let judged: Vec<Judged<'_>> = (0..80)
             .map(|number| {
-                let success = f64::from(u8::from(number % 2 == 0));
-                let critics = [success + f64::from(number) / 1e6, f64::from(number / 2 % 2), 0.5];
+                // Every scene has as many texts of each kind.
+                let success = f64::from(number / 8 % 2);
+                let critics = [success + f64::from(number) / 1e6, f64::from(number / 16 % 2), 0.5];
                 Judged { agent: "reader", scene: &scenes[number as usize % 8], critics, success }
             })
             .collect();
