@@ -57,10 +57,10 @@ pub struct Written {
     ahead: Vec<View>,
 }
 
-/// Makes an item: its texts, and the pictures along its path. See [`write`].
+/// Makes an item: its texts, and the pictures along its path. See [`write()`].
 ///
 /// # Errors
-/// As for [`write`].
+/// As for [`write()`].
 pub fn make(
     item: &Item,
     settings: &Settings,
