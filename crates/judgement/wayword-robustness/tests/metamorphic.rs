@@ -238,7 +238,10 @@ impl Trial<'_> {
             |thing: &&wayword_checks::SeenThing| agree(&thing.name, name) && thing.colour.as_deref() == Some(colour);
         let objects: BTreeSet<ObjectId> = things().filter(is_it).filter_map(|thing| thing.object.clone()).collect();
         let is_free = |new: &&str| things().all(|thing| thing.colour.as_deref() != Some(new));
-        let new = ["purple", "orange", "pink", "turquoise"].into_iter().find(is_free).unwrap();
+        // Of as many words, for a text has its length.
+        let shade = if colour.contains(' ') { "light " } else { "" };
+        let others = ["purple", "orange", "pink", "turquoise"].map(|other| format!("{shade}{other}"));
+        let new = others.iter().map(String::as_str).find(is_free).unwrap();
         let alter = Recoloured { objects, colour: new.to_owned() };
         let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
         let other = write(&changed, &self.styles[at]);

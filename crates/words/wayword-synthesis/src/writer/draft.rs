@@ -2,6 +2,7 @@
 
 use super::{
     Brief,
+    dice::Dice,
     naming::{Names, Phrase},
     phrases::draw,
     route::Clause,
@@ -22,20 +23,14 @@ pub(super) struct Draft<'a> {
 }
 
 impl<'a> Draft<'a> {
-    pub(super) fn of(
-        told: Vec<Clause>,
-        task: Option<&str>,
-        full_stop: bool,
-        brief: &'a Brief<'_>,
-        rng: &mut ChaCha8Rng,
-    ) -> Self {
-        let mut names = Names::of(&brief.profile.way);
-        let mut phrases: Vec<Phrase> = (0..told.len()).map(|at| names.phrase(&told, at, brief, rng)).collect();
+    pub(super) fn of(told: Vec<Clause>, task: Option<&str>, full_stop: bool, brief: &'a Brief<'_>, dice: Dice) -> Self {
+        let mut names = Names::of(&brief.profile.way, dice);
+        let mut phrases: Vec<Phrase> = (0..told.len()).map(|at| names.phrase(&told, at, brief, dice)).collect();
         if let Some(task) = task {
             phrases.pop();
             phrases.push(Phrase { text: task.to_owned(), is_clause: true });
         }
-        let joints = joints(&told, &phrases, brief, rng);
+        let joints = joints(&told, &phrases, brief, dice);
         Self { told, phrases, joints, names, has_task: task.is_some(), full_stop }
     }
 
@@ -60,7 +55,8 @@ impl<'a> Draft<'a> {
     }
 
     /// Says a phrase of those within a span in another way, or joins it in another way.
-    pub(super) fn reword(&mut self, span: [usize; 2], starts: &[usize], brief: &Brief<'_>, rng: &mut ChaCha8Rng) {
+    pub(super) fn reword(&mut self, span: [usize; 2], starts: &[usize], brief: &Brief<'_>, dice: Dice) {
+        let rng = &mut dice.by(&["reword"]);
         let first = starts.iter().rposition(|start| *start <= span[0]).unwrap_or(0);
         let end = starts.iter().position(|start| *start >= span[1]).unwrap_or(starts.len()).max(first + 1);
         let at = rng.random_range(first..end);
@@ -68,7 +64,7 @@ impl<'a> Draft<'a> {
         if at > first && self.joints[at] != Joint::Run && (is_task || rng.random_bool(0.5)) {
             self.joints[at] = self.other_joint(at, brief, rng);
         } else if !is_task {
-            let phrase = self.names.phrase(&self.told, at, brief, rng);
+            let phrase = self.names.phrase(&self.told, at, brief, dice);
             self.joints[at] = match (is_until(&phrase.text), self.joints[at]) {
                 (true, _) => Joint::Run,
                 (false, Joint::Run) => Joint::And,
@@ -91,7 +87,7 @@ impl<'a> Draft<'a> {
 }
 
 /// What joins the phrases into sentences, as the style joins them.
-fn joints(told: &[Clause], phrases: &[Phrase], brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Vec<Joint> {
+fn joints(told: &[Clause], phrases: &[Phrase], brief: &Brief<'_>, dice: Dice) -> Vec<Joint> {
     let constraints = &brief.style.constraints;
     let least = constraints.min_sentences.unwrap_or(1);
     let most = constraints.max_sentences.unwrap_or(usize::MAX).max(least);
@@ -114,7 +110,7 @@ fn joints(told: &[Clause], phrases: &[Phrase], brief: &Brief<'_>, rng: &mut ChaC
             if has_verb { share * if is_again { 0.3 } else { 1.0 } } else { 0.0 }
         };
         let all: Vec<(f64, Joint)> = shares.iter().map(|(joint, share)| (weight(joint, *share), *joint)).collect();
-        joints.push(draw(&all, rng).unwrap_or(Joint::Stop));
+        joints.push(draw(&all, &mut told[at].drawn("joint", dice)).unwrap_or(Joint::Stop));
     }
     let begins = |joints: &[Joint]| joints.iter().filter(|joint| joint.begins_sentence()).count();
     while begins(&joints) < least {
@@ -123,6 +119,7 @@ fn joints(told: &[Clause], phrases: &[Phrase], brief: &Brief<'_>, rng: &mut ChaC
         if within.is_empty() {
             break;
         }
+        let mut rng = dice.at("sentence", within.len());
         joints[within[rng.random_range(0..within.len())]] = Joint::Stop;
     }
     while begins(&joints) > most {

@@ -1,10 +1,9 @@
 //! Which of the things that are remembered are worth naming.
 
-use super::Brief;
+use super::{Brief, dice::Dice};
 use rand::Rng;
-use rand_chacha::ChaCha8Rng;
 use wayword_checks::memory::Remembered;
-use wayword_core::{Side, Verdict};
+use wayword_core::{ObjectId, Side, Verdict};
 use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, normal, plural, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
@@ -12,6 +11,7 @@ pub(super) struct Landmarks<'a> {
     brief: &'a Brief<'a>,
     used: Vec<String>,
     avoided: Vec<String>,
+    dice: Dice,
 }
 
 /// A landmark in words.
@@ -82,13 +82,13 @@ pub(super) enum Use {
 impl<'a> Landmarks<'a> {
     /// Nothing chosen yet. It avoids names about which checks complained in earlier texts, and the target, which the
     /// task names.
-    pub(super) fn new(brief: &'a Brief<'a>) -> Self {
+    pub(super) fn new(brief: &'a Brief<'a>, dice: Dice) -> Self {
         let blamed = brief.complaints.iter().flat_map(|complaint| {
             let failed = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
             failed.filter_map(|finding| complaint.text.get(finding.span?[0]..finding.span?[1])).map(normal)
         });
         let target = brief.walk.path.target.as_ref().map(|target| normal(&target.name));
-        Self { brief, used: target.into_iter().collect(), avoided: blamed.collect() }
+        Self { brief, used: target.into_iter().collect(), avoided: blamed.collect(), dice }
     }
 
     /// Whether a name may still be used.
@@ -104,20 +104,24 @@ impl<'a> Landmarks<'a> {
     }
 
     /// The landmark of at least that salience that identifies a frame best, if there is one.
-    pub(super) fn choose(&mut self, frame: usize, salience: u8, rng: &mut ChaCha8Rng) -> Option<Landmark> {
-        self.find(frame, salience, Use::Here, rng)
+    pub(super) fn choose(&mut self, frame: usize, salience: u8) -> Option<Landmark> {
+        self.find(frame, salience, Use::Here)
     }
 
     /// The same for one use.
-    pub(super) fn find(&mut self, frame: usize, salience: u8, to: Use, rng: &mut ChaCha8Rng) -> Option<Landmark> {
+    pub(super) fn find(&mut self, frame: usize, salience: u8, to: Use) -> Option<Landmark> {
         let memory = self.brief.memory;
         let told = memory
             .seen_from(frame)
             .filter(|seen| is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, to));
         // Now and then anything will do, so that texts differ.
-        let chance = if rng.random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
+        let chance = if self.dice.at("rare", frame).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
         let ahead = |seen: &Remembered| if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
-        let scored = told.map(|seen| (self.score(seen, frame) + ahead(seen) + rng.random_range(0.0..chance), seen));
+        let drawn = |seen: &Remembered| {
+            let mut rng = self.dice.by(&["thing", &frame.to_string(), identity(seen)]);
+            rng.random_range(0.0..chance)
+        };
+        let scored = told.map(|seen| (self.score(seen, frame) + ahead(seen) + drawn(seen), seen));
         let (_, best) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
         self.used.push(normal(&best.name));
         Some(self.landmark(best, frame))
@@ -223,6 +227,11 @@ impl<'a> Landmarks<'a> {
             with: None,
         }
     }
+}
+
+/// What a thing draws by: the same whatever else is seen.
+fn identity(seen: &Remembered) -> &str {
+    seen.object.as_ref().map_or(&seen.name, ObjectId::as_str)
 }
 
 /// Whether a name reads as a landmark: known as one, and not a room's or a list's name.

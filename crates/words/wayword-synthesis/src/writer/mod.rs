@@ -1,5 +1,6 @@
 //! Writing: what a writer gets, and the writer that works by rules.
 
+mod dice;
 mod draft;
 mod landmarks;
 mod naming;

@@ -2,6 +2,7 @@
 
 use super::{
     Brief,
+    dice::Dice,
     phrases::{draw, fill, stay_phrase},
     route::{Clause, side_word, stands_still, suits},
 };
@@ -56,16 +57,18 @@ struct Needs {
 pub(super) struct Names<'a> {
     way: &'a Way,
     chosen: BTreeMap<String, String>,
+    dice: Dice,
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn of(way: &'a Way) -> Self {
-        Self { way, chosen: BTreeMap::new() }
+    pub(super) fn of(way: &'a Way, dice: Dice) -> Self {
+        Self { way, chosen: BTreeMap::new(), dice }
     }
 
     /// One of the clauses of a text in words.
-    pub(super) fn phrase(&mut self, told: &[Clause], at: usize, brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Phrase {
+    pub(super) fn phrase(&mut self, told: &[Clause], at: usize, brief: &Brief<'_>, dice: Dice) -> Phrase {
         let clause = &told[at];
+        let rng = &mut clause.drawn("words", dice);
         if clause.kind == Kind::Straight && stands_still(brief.walk) {
             return Phrase { text: stay_phrase(None, rng), is_clause: true };
         }
@@ -81,7 +84,7 @@ impl<'a> Names<'a> {
         let shape = self.shape(clause, needs, rng);
         let side = clause.side.map_or("", side_word);
         let thing = clause.thing.as_ref().map(|thing| {
-            let name = self.thing(&thing.name, rng);
+            let name = self.thing(&thing.name);
             let says_colour = thing.needs_colour || rng.random_bool(COLOURED);
             let colour = thing.colour.as_ref().filter(|_| says_colour);
             let name = colour.map_or(name.clone(), |colour| format!("{colour} {name}"));
@@ -93,7 +96,7 @@ impl<'a> Names<'a> {
             };
             thing.with.as_ref().map_or(name.clone(), |other| format!("{name} and {other}"))
         });
-        let mut room = |room: Option<&String>| room.map(|room| self.room(room, rng)).unwrap_or_default();
+        let mut room = |room: Option<&String>| room.map(|room| self.room(room)).unwrap_or_default();
         let (room, from) = (room(clause.room.as_ref()), room(clause.from.as_ref()));
         let gaps = [
             ("{s}", side),
@@ -138,24 +141,25 @@ impl<'a> Names<'a> {
         draw(&all, rng).cloned().unwrap_or_else(|| plain(clause.kind).to_owned())
     }
 
-    fn room(&mut self, room: &str, rng: &mut ChaCha8Rng) -> String {
-        self.name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)), rng)
+    fn room(&mut self, room: &str) -> String {
+        self.name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)))
     }
 
     /// A label that says more than the usual name ("round table") often stays as it is.
-    fn thing(&mut self, name: &str, rng: &mut ChaCha8Rng) -> String {
+    fn thing(&mut self, name: &str) -> String {
         let names = thing(name).and_then(|thing| self.way.things.get(thing.name));
         let says_more = names.is_some_and(|names| !names.contains_key(name));
-        let names = names.filter(|_| !says_more || rng.random_bool(0.4));
-        self.name(name, names, rng)
+        let names = names.filter(|_| !says_more || self.dice.by(&["usual name", name]).random_bool(0.4));
+        self.name(name, names)
     }
 
-    fn name(&mut self, name: &str, names: Option<&BTreeMap<String, f64>>, rng: &mut ChaCha8Rng) -> String {
+    fn name(&mut self, name: &str, names: Option<&BTreeMap<String, f64>>) -> String {
         if let Some(chosen) = self.chosen.get(name) {
             return chosen.clone();
         }
         let all: Vec<(f64, &String)> = names.into_iter().flatten().map(|(name, count)| (*count, name)).collect();
-        let chosen = draw(&all, rng).cloned().unwrap_or_else(|| name.to_owned());
+        let drawn = draw(&all, &mut self.dice.by(&["name", name]));
+        let chosen = drawn.cloned().unwrap_or_else(|| name.to_owned());
         self.chosen.insert(name.to_owned(), chosen.clone());
         chosen
     }

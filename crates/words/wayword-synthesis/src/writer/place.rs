@@ -7,6 +7,7 @@ mod room;
 
 use super::{
     Brief, WriteError,
+    dice::Dice,
     landmarks::Landmarks,
     object::Said,
     phrases::{self, drawn, fill, pick, the, unbent},
@@ -28,7 +29,8 @@ const NEVER: f64 = 1000.0;
 const RATHER_NOT: f64 = 100.0;
 
 /// A text that names the place at the end, and what to do there.
-pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
+pub(super) fn the_place(brief: &Brief<'_>, dice: Dice) -> Result<String, WriteError> {
+    let rng = &mut dice.by(&["place"]);
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
     // A target is there to be asked for, where the style asks for anything.
@@ -36,7 +38,7 @@ pub(super) fn the_place(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<Strin
         || brief.profile.tasks >= 0.5 && walk.path.target.is_some()
         || rng.random_bool(brief.profile.tasks.clamp(0.0, 1.0));
     let Some(room) = walk.room(last).filter(|_| asks && !stands_still(walk)) else {
-        return bare(brief, asks, rng);
+        return bare(brief, asks, dice);
     };
     let rooms = [room.to_owned()];
     let object = Said::of(brief, rng)?;
@@ -116,8 +118,9 @@ fn draft(brief: &Brief<'_>, goal: &Goal<'_>, object: &Said<'_>, plan: Plan<'_>, 
 }
 
 /// A text without a task, or to an end whose room has no name.
-fn bare(brief: &Brief<'_>, asks: bool, rng: &mut ChaCha8Rng) -> Result<String, WriteError> {
-    let mut landmarks = Landmarks::new(brief);
+fn bare(brief: &Brief<'_>, asks: bool, dice: Dice) -> Result<String, WriteError> {
+    let rng = &mut dice.by(&["place"]);
+    let mut landmarks = Landmarks::new(brief, dice);
     let task = if asks { Some(task::task(brief, rng)?) } else { None };
     if let Some((_, name)) = &task {
         landmarks.reserve(name);
@@ -157,7 +160,7 @@ fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaC
         }
         Some(Climb::Level) | None => {}
     }
-    let by = (0..=last).rev().find_map(|frame| landmarks.choose(frame, 2, rng));
+    let by = (0..=last).rev().find_map(|frame| landmarks.choose(frame, 2));
     let through = (0..last).rev().find_map(|at| walk.room(at).and_then(usable_room));
     match (by, through) {
         (Some(landmark), _) => fill(

@@ -2,6 +2,7 @@
 
 use super::{
     Brief,
+    dice::Dice,
     draft::Draft,
     landmarks::Landmarks,
     naming::Lengths,
@@ -34,17 +35,18 @@ const LEAST_WORDS: usize = 8;
 const OPTIONAL: u8 = 3;
 
 /// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
-pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, rng: &mut ChaCha8Rng) -> String {
+pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, dice: Dice) -> String {
     let words = brief.length().max(LEAST_WORDS);
     let end = brief.memory.frames().saturating_sub(1);
     let rooms: Vec<String> = brief.memory.room(end).map(str::to_owned).into_iter().collect();
     let matter = Matter { target: task.map(|(_, name)| name.as_str()), rooms: &rooms };
     let copies = &brief.profile.copies;
     let mut best: Option<(usize, String)> = None;
-    for _ in 0..PLANS {
-        let plan = Plan::of(brief, task, words, rng);
-        let mut draft = plan.worded(brief, task, rng);
-        for _ in 0..WORDINGS {
+    for number in 0..PLANS {
+        let dice = dice.other(number);
+        let plan = Plan::of(brief, task, words, dice);
+        let mut draft = plan.worded(brief, task, dice);
+        for wording in 0..WORDINGS {
             let (text, starts) = draft.text();
             let (copied, shared) = (copies.copied(&text, matter), copies.much(&text));
             let cost = if copied.is_some() { COPIED } else { 0 } + if shared.is_some() { SHARED } else { 0 };
@@ -54,7 +56,7 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, rng: &
                 best = Some((worth, text));
             }
             let Some(span) = copied.or(shared) else { break };
-            draft.reword(span, &starts, brief, rng);
+            draft.reword(span, &starts, brief, dice.other(wording));
         }
         if best.as_ref().is_some_and(|(worth, _)| *worth <= OFF) {
             break;
@@ -71,31 +73,33 @@ struct Plan {
 
 impl Plan {
     /// One of about so many words.
-    fn of(brief: &Brief<'_>, task: Option<&(String, String)>, words: usize, rng: &mut ChaCha8Rng) -> Self {
-        let mut landmarks = Landmarks::new(brief);
+    fn of(brief: &Brief<'_>, task: Option<&(String, String)>, words: usize, dice: Dice) -> Self {
+        let mut landmarks = Landmarks::new(brief, dice);
         if let Some((_, name)) = task {
             landmarks.reserve(name);
         }
-        let mut clauses = route::clauses(brief, &mut landmarks, rng);
-        fill::name_a_thing(&mut clauses, brief, &mut landmarks, rng);
+        let mut clauses = route::clauses(brief, &mut landmarks, dice);
+        fill::name_a_thing(&mut clauses, brief, &mut landmarks, dice);
         let mut lengths = Lengths::of(&brief.profile.way);
         while lengths.sum(&clauses) > words as f64 + SLACK && drop_least(&mut clauses, OPTIONAL) {}
+        let mut times = 0;
         while lengths.sum(&clauses) < words as f64 - SLACK && !stands_still(brief.walk) {
-            if !fill::fill(&mut clauses, brief, &mut landmarks, rng) {
+            if !fill::fill(&mut clauses, brief, &mut landmarks, dice.other(times)) {
                 break;
             }
+            times += 1;
         }
-        Self { clauses, full_stop: rng.random_bool(brief.profile.full_stops.clamp(0.0, 1.0)) }
+        Self { clauses, full_stop: dice.by(&["full stop"]).random_bool(brief.profile.full_stops.clamp(0.0, 1.0)) }
     }
 
-    fn worded<'a>(&self, brief: &'a Brief<'_>, task: Option<&(String, String)>, rng: &mut ChaCha8Rng) -> Draft<'a> {
+    fn worded<'a>(&self, brief: &'a Brief<'_>, task: Option<&(String, String)>, dice: Dice) -> Draft<'a> {
         let mut clauses = self.clauses.clone();
         let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
         let task = task.map(|(task, _)| task.as_str());
         loop {
             let mut told = clauses.clone();
             mend(&mut told, brief);
-            let draft = Draft::of(told, task, self.full_stop, brief, rng);
+            let draft = Draft::of(told, task, self.full_stop, brief, dice);
             if word_count(&draft.text().0) < limit || !drop_least(&mut clauses, KEPT) {
                 return draft;
             }

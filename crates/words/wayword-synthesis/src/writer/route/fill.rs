@@ -5,6 +5,7 @@ use crate::{
     style::way::Kind,
     writer::{
         Brief,
+        dice::Dice,
         landmarks::{Landmark, Landmarks, Use},
         phrases::draw,
     },
@@ -56,11 +57,12 @@ pub(in crate::writer) fn fill(
     clauses: &mut Vec<Clause>,
     brief: &Brief<'_>,
     landmarks: &mut Landmarks<'_>,
-    rng: &mut ChaCha8Rng,
+    dice: Dice,
 ) -> bool {
     let mut left = ALL.to_vec();
-    while let Some(more) = draw(&left, rng) {
-        let mut filler = Filler { clauses, brief, landmarks, rng };
+    let mut rng = dice.by(&["more"]);
+    while let Some(more) = draw(&left, &mut rng) {
+        let mut filler = Filler { clauses, brief, landmarks, rng: dice.by(&["more of", &format!("{more:?}")]) };
         let is_told = match more {
             More::Landmark => filler.landmark(),
             More::Side => filler.side(),
@@ -84,10 +86,10 @@ pub(in crate::writer) fn name_a_thing(
     clauses: &mut Vec<Clause>,
     brief: &Brief<'_>,
     landmarks: &mut Landmarks<'_>,
-    rng: &mut ChaCha8Rng,
+    dice: Dice,
 ) {
     if names_none(clauses) {
-        Filler { clauses, brief, landmarks, rng }.landmark();
+        Filler { clauses, brief, landmarks, rng: dice.by(&["one thing"]) }.landmark();
     }
 }
 
@@ -100,7 +102,7 @@ struct Filler<'a, 'b> {
     clauses: &'a mut Vec<Clause>,
     brief: &'a Brief<'a>,
     landmarks: &'a mut Landmarks<'b>,
-    rng: &'a mut ChaCha8Rng,
+    rng: ChaCha8Rng,
 }
 
 impl Filler<'_, '_> {
@@ -115,7 +117,7 @@ impl Filler<'_, '_> {
         let memory = self.brief.memory;
         let on_stairs = |frame: &usize| memory.flights.iter().any(|flight| flight.from < *frame && *frame < flight.to);
         let mut frames: Vec<usize> = (1..memory.frames().saturating_sub(1)).filter(|frame| !on_stairs(frame)).collect();
-        frames.shuffle(self.rng);
+        frames.shuffle(&mut self.rng);
         frames
     }
 
@@ -127,7 +129,7 @@ impl Filler<'_, '_> {
             let Some(thing) = self.thing_at(frame) else { continue };
             let way = &self.brief.profile.way;
             let side = thing.passed.filter(|(passed, _)| *passed <= frame && *passed + 2 > frame).map(|(_, side)| side);
-            let kind = past(way, self.clauses, side, thing.side, self.rng);
+            let kind = past(way, self.clauses, side, thing.side, &mut self.rng);
             let is_only = names_none(self.clauses);
             let mut clause = Clause::new(kind, frame, if is_only { MAIN } else { SIDE }).by(thing);
             clause.side = side.filter(|_| kind == Kind::PassOnSide);
@@ -146,7 +148,7 @@ impl Filler<'_, '_> {
             (is_only, STOPPED_AT, Use::Beside),
         ];
         let tries = tries.into_iter().filter(|(may, ..)| *may);
-        tries.into_iter().find_map(|(_, salience, to)| self.landmarks.find(frame, salience, to, self.rng))
+        tries.into_iter().find_map(|(_, salience, to)| self.landmarks.find(frame, salience, to))
     }
 
     fn side(&mut self) -> bool {
@@ -226,7 +228,7 @@ impl Filler<'_, '_> {
             let clause = &self.clauses[at];
             let opening = self.brief.memory.openings.iter().find(|opening| opening.before == clause.at);
             let Some(opening) = opening.filter(|_| clause.kind == Kind::Enter) else { continue };
-            if let Some(thing) = self.landmarks.find(opening.behind, WALKED_PAST, Use::Here, self.rng) {
+            if let Some(thing) = self.landmarks.find(opening.behind, WALKED_PAST, Use::Here) {
                 self.clauses[at].kind = Kind::EnterWith;
                 self.clauses[at].thing = Some(thing);
                 return true;
@@ -255,7 +257,7 @@ impl Filler<'_, '_> {
             is_after && !goes_on(now) && (now.at > 0 || !now.is_bare())
         };
         let free: Vec<usize> = (0..self.clauses.len()).filter(is_free).collect();
-        let Some(at) = free.choose(self.rng).copied() else { return false };
+        let Some(at) = free.choose(&mut self.rng).copied() else { return false };
         let frame = self.clauses[at].at;
         self.clauses.insert(at, Clause::new(Kind::Straight, frame, FILLER));
         true

@@ -9,6 +9,7 @@ mod turns;
 
 use super::{
     Brief,
+    dice::Dice,
     landmarks::{Landmark, Landmarks},
 };
 use crate::{style::way::Kind, walk::Walk};
@@ -79,6 +80,11 @@ impl Clause {
         self
     }
 
+    /// What it draws for one purpose.
+    pub(super) fn drawn(&self, purpose: &str, dice: Dice) -> ChaCha8Rng {
+        dice.by(&[purpose, &format!("{:?}", self.kind), &self.at.to_string()])
+    }
+
     /// Whether it is a turn without a place.
     pub(super) fn is_bare(&self) -> bool {
         self.kind.is_bare_turn()
@@ -86,25 +92,29 @@ impl Clause {
 }
 
 /// The clauses of a path, the stop last.
-pub(super) fn clauses(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> Vec<Clause> {
+pub(super) fn clauses(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, dice: Dice) -> Vec<Clause> {
     let memory = brief.memory;
     let here = memory.room(0).and_then(usable_room);
-    let mut planner = Planner { brief, memory, landmarks, rng, clauses: Vec::new(), here, along: false };
+    let rng = dice.by(&["start"]);
+    let mut planner = Planner { brief, memory, landmarks, dice, rng, clauses: Vec::new(), here, along: false };
     if !stands_still(brief.walk) {
         planner.way();
     }
     if planner.clauses.is_empty() {
         planner.clauses.push(Clause::new(Kind::Straight, 0, MAIN));
     }
+    planner.rng = dice.by(&["stop"]);
     planner.stop();
     planner.clauses
 }
 
-struct Planner<'a, 'b, 'c> {
+struct Planner<'a, 'b> {
     brief: &'a Brief<'a>,
     memory: &'a Memory,
-    landmarks: &'b mut Landmarks<'c>,
-    rng: &'b mut ChaCha8Rng,
+    landmarks: &'a mut Landmarks<'b>,
+    dice: Dice,
+    /// What is drawn for the step that is told.
+    rng: ChaCha8Rng,
     clauses: Vec<Clause>,
     /// The room in which the text has the walker now, where it says so.
     here: Option<String>,
@@ -112,11 +122,12 @@ struct Planner<'a, 'b, 'c> {
     along: bool,
 }
 
-impl Planner<'_, '_, '_> {
+impl Planner<'_, '_> {
     fn way(&mut self) {
         let last = self.memory.frames().saturating_sub(1);
         let mut at = self.leave_at_once().unwrap_or(0);
         while at < last {
+            self.rng = self.dice.at("step", at);
             let bend = self.memory.bends.iter().find(|bend| bend.first == at).copied();
             let opening = self.memory.openings.iter().find(|opening| opening.before == at);
             if let Some(flight) = self.memory.flights.iter().find(|flight| flight.from == at) {

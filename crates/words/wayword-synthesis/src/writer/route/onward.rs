@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use wayword_core::Side;
 use wayword_language::lexicon::room_name;
 
-impl Planner<'_, '_, '_> {
+impl Planner<'_, '_> {
     pub(super) fn along(&mut self, at: usize, room: &str, weight: u8) {
         self.push(Clause::new(Kind::Along, at, weight).room(room));
         self.along = true;
@@ -50,12 +50,12 @@ impl Planner<'_, '_, '_> {
             [(at + 1, STOPPED_AT, Use::Onward), (at, WALKED_PAST, Use::Onward), (at + 1, STOPPED_AT, Use::Beside)];
         let tries =
             std::iter::once((at + 1, WALKED_PAST, Use::Onward)).chain(more.into_iter().take(if must { 3 } else { 1 }));
-        tries.into_iter().find_map(|(frame, salience, to)| self.landmarks.find(frame, salience, to, self.rng))
+        tries.into_iter().find_map(|(frame, salience, to)| self.landmarks.find(frame, salience, to))
     }
 
     pub(super) fn pass(&mut self, at: usize, thing: Landmark) {
         let side = thing.passed.filter(|(frame, _)| (at..=at + 1).contains(frame)).map(|(_, side)| side);
-        let kind = past(&self.brief.profile.way, &self.clauses, side, thing.side, self.rng);
+        let kind = past(&self.brief.profile.way, &self.clauses, side, thing.side, &mut self.rng);
         let names_thing = self.clauses.iter().any(|clause| clause.thing.is_some());
         let mut clause = Clause::new(kind, at, if names_thing { SIDE } else { MAIN }).by(thing);
         clause.side = side.filter(|_| kind == Kind::PassOnSide);

@@ -18,7 +18,7 @@ const LEFT_AT_ONCE: f64 = 0.6;
 /// One stands in a door that is no farther than this, metres.
 const IN_DOOR_M: f64 = 0.5;
 
-impl Planner<'_, '_, '_> {
+impl Planner<'_, '_> {
     /// Many texts begin with leaving the room of the start, however one turns before that. The frame from which the
     /// way goes on.
     pub(super) fn leave_at_once(&mut self) -> Option<usize> {
@@ -37,7 +37,7 @@ impl Planner<'_, '_, '_> {
             kinds.push((self.count(Kind::LeaveByDoor) * 8.0, Kind::LeaveByDoor));
             kinds.push((self.count(Kind::ThroughDoor), Kind::ThroughDoor));
         }
-        let kind = draw(&kinds, self.rng)?;
+        let kind = draw(&kinds, &mut self.rng)?;
         let mut clause = Clause::new(kind, opening.before, MAIN);
         match kind {
             Kind::LeaveEnter => clause = clause.from(&from).room(&opening.to),
@@ -92,7 +92,7 @@ impl Planner<'_, '_, '_> {
         if hall.is_some() && !self.along && self.is_end_of_hall(opening) {
             kinds.push((self.count(Kind::AlongToEnd) * 8.0, Kind::AlongToEnd));
         }
-        let Some(kind) = draw(&kinds, self.rng) else {
+        let Some(kind) = draw(&kinds, &mut self.rng) else {
             self.enter(None);
             return;
         };
@@ -119,7 +119,7 @@ impl Planner<'_, '_, '_> {
         }
         if kind == Kind::ToDoor {
             let kinds = [(1.0, Kind::ThroughDoor), (if to.is_some() { 2.0 } else { 0.0 }, Kind::Enter)];
-            let kind = draw(&kinds, self.rng).unwrap_or(Kind::ThroughDoor);
+            let kind = draw(&kinds, &mut self.rng).unwrap_or(Kind::ThroughDoor);
             if kind == Kind::Enter {
                 self.push(Clause::new(kind, at, weight).from(&opening.from).room(&opening.to));
                 return self.enter(to.as_deref());
@@ -178,14 +178,14 @@ impl Planner<'_, '_, '_> {
             kinds.push((self.count(Kind::Leave) * 0.15, Kind::Leave));
         }
         kinds.push((self.count(Kind::TurnAt) * 1.5, Kind::TurnAt));
-        match draw(&kinds, self.rng) {
+        match draw(&kinds, &mut self.rng) {
             Some(Kind::Leave) => {
                 self.push(Clause::new(Kind::Turn, at, MAIN).to(side));
                 self.push(Clause::new(Kind::Leave, at, MAIN).from(&opening.from).room(&opening.from));
                 self.enter(None);
             }
             Some(Kind::TurnAt) => {
-                match self.landmarks.find(at, WALKED_PAST, Use::Here, self.rng).filter(|_| at > 0) {
+                match self.landmarks.find(at, WALKED_PAST, Use::Here).filter(|_| at > 0) {
                     Some(thing) => self.push(Clause::new(Kind::TurnAt, at, MAIN).to(side).by(thing)),
                     None => self.push(Clause::new(Kind::Turn, at, MAIN).to(side)),
                 }

@@ -11,15 +11,15 @@ use wayword_language::lexicon::room_name;
 /// How much seldomer the last room is named twice.
 const NAMED_AGAIN: f64 = 0.1;
 
-impl Planner<'_, '_, '_> {
+impl Planner<'_, '_> {
     /// The end: at a thing within reach, in the room, in the doorway, or at the stairs.
     pub(super) fn stop(&mut self) {
         let end = self.memory.frames().saturating_sub(1);
         let room = self.memory.room(end).and_then(usable_room);
         let is_told = room.is_some() && self.here == room;
         let flight = self.memory.flights.last().filter(|flight| flight.to == end).map(|flight| flight.climb);
-        let thing = self.landmarks.find(end, WALKED_PAST, Use::Stop, self.rng);
-        let thing = thing.or_else(|| self.landmarks.find(end, STOPPED_AT, Use::Stop, self.rng));
+        let thing = self.landmarks.find(end, WALKED_PAST, Use::Stop);
+        let thing = thing.or_else(|| self.landmarks.find(end, STOPPED_AT, Use::Stop));
         let last_hop_m = self.brief.walk.moves.last().map_or(f64::INFINITY, |step| step.distance_m);
         let door = self.memory.openings.last().filter(|opening| opening.behind == end && opening.has_door);
         // Where the text has the walker in another room, it names the last one.
@@ -58,7 +58,7 @@ impl Planner<'_, '_, '_> {
         if misleads && room.is_some() {
             kinds.retain(|(_, kind)| matches!(kind, Kind::StopIn | Kind::StopAtIn | Kind::StopInDoorwayOf));
         }
-        let kind = draw(&kinds, self.rng).unwrap_or(Kind::Stop);
+        let kind = draw(&kinds, &mut self.rng).unwrap_or(Kind::Stop);
         let mut clause = Clause::new(kind, end, KEPT);
         clause.thing = thing.filter(|_| matches!(kind, Kind::StopAt | Kind::StopAtIn));
         clause.room = room;

@@ -10,7 +10,7 @@ use wayword_checks::memory::Bend;
 use wayword_core::{Climb, Side};
 use wayword_language::lexicon::room_name;
 
-impl Planner<'_, '_, '_> {
+impl Planner<'_, '_> {
     /// A turn within a room: at a landmark, at the stairs, in the room, or after what was just said.
     pub(super) fn turn(&mut self, bend: Bend) {
         let (at, side) = (bend.first, bend.side());
@@ -22,12 +22,12 @@ impl Planner<'_, '_, '_> {
         }
         let flight = self.memory.flights.iter().find(|flight| flight.to == at).map(|flight| flight.climb);
         let thing = match self.rng.random_bool(if flight.is_some() { 0.25 } else { 0.75 }) {
-            true => self.landmarks.find(at, WALKED_PAST, Use::Here, self.rng),
+            true => self.landmarks.find(at, WALKED_PAST, Use::Here),
             false => None,
         };
         if let Some(thing) = thing {
             let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };
-            let kind = draw(&[(3.0, Kind::TurnAt), (ahead, Kind::To)], self.rng).unwrap_or(Kind::TurnAt);
+            let kind = draw(&[(3.0, Kind::TurnAt), (ahead, Kind::To)], &mut self.rng).unwrap_or(Kind::TurnAt);
             if kind == Kind::TurnAt {
                 return self.push(Clause::new(kind, at, MAIN).to(side).by(thing));
             }
@@ -55,7 +55,7 @@ impl Planner<'_, '_, '_> {
         if room.is_some() {
             kinds.push((0.4, Kind::TurnIn));
         }
-        let kind = draw(&kinds, self.rng).unwrap_or(bare);
+        let kind = draw(&kinds, &mut self.rng).unwrap_or(bare);
         let room = room.unwrap_or_default();
         match kind {
             Kind::Along => {
@@ -109,7 +109,7 @@ impl Planner<'_, '_, '_> {
         if leaves_soon || climbs {
             return;
         }
-        if let Some(thing) = self.landmarks.find(1, WALKED_PAST, Use::Here, self.rng) {
+        if let Some(thing) = self.landmarks.find(1, WALKED_PAST, Use::Here) {
             self.pass(0, thing);
         }
     }

@@ -1,0 +1,36 @@
+//! What a text draws by chance. Each draw has a name, so that no draw depends on those before it: what a thing draws stays as it
+//! is where another thing comes or goes.
+
+use super::Brief;
+use rand_chacha::ChaCha8Rng;
+use wayword_core::{rng, seed};
+
+/// Draws by name.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Dice {
+    seed: u64,
+}
+
+impl Dice {
+    /// The draws of one text.
+    pub(super) fn of(brief: &Brief<'_>) -> Self {
+        let (attempt, candidate) = (brief.complaints.len().to_string(), brief.candidate.to_string());
+        let names = ["rules", &brief.style.name, &brief.walk.path.id, &attempt, &candidate];
+        Self { seed: seed::derive(brief.seed, &names) }
+    }
+
+    /// Other draws by the same names.
+    pub(super) fn other(self, number: usize) -> Self {
+        Self { seed: seed::derive(self.seed, &["other", &number.to_string()]) }
+    }
+
+    /// What is drawn by some names.
+    pub(super) fn by(self, names: &[&str]) -> ChaCha8Rng {
+        rng(self.seed, names)
+    }
+
+    /// What is drawn for one purpose at a frame.
+    pub(super) fn at(self, purpose: &str, frame: usize) -> ChaCha8Rng {
+        self.by(&[purpose, &frame.to_string()])
+    }
+}
