@@ -23,7 +23,7 @@ use wayword_language::{
 };
 use wayword_robustness::{
     metamorphic::{Gone, Outcome, Written, add, material, mirror, remove, reverse, turn},
-    worlds::{Added, Alter, Altered, Mirror, QuarterTurn, Recoloured, Removed},
+    worlds::{Added, Alter, Altered, Mirror, QuarterTurn, Recoloured, Removed, can_go},
 };
 use wayword_synthesis::{
     dialogue::{Mode, QUESTIONS, RulesAsker, RulesSummariser},
@@ -296,10 +296,15 @@ impl Trial<'_> {
     }
 }
 
-/// The things on the way that a text names.
+/// The things on the way that a text names and that can be taken away.
 fn told_things(text: &Instruction) -> BTreeSet<String> {
     let is_thing = |mention: &&Mention| mention.kind == MentionKind::Landmark;
-    text.mentions.iter().filter(is_thing).map(|mention| name_in(text, mention.span)).collect()
+    text.mentions
+        .iter()
+        .filter(is_thing)
+        .map(|mention| name_in(text, mention.span))
+        .filter(|name| can_go(name))
+        .collect()
 }
 
 /// The things of a text whose colour it names, with the colour.

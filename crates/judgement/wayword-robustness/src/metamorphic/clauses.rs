@@ -2,6 +2,7 @@
 
 use super::Written;
 use std::ops::RangeInclusive;
+use wayword_core::MentionKind;
 use wayword_language::{reading, text::tokens};
 
 /// A part of a sentence, as the reader takes texts apart.
@@ -9,8 +10,8 @@ use wayword_language::{reading, text::tokens};
 pub(super) struct Clause {
     /// Its words in lower case, without what joins it to the clause before.
     pub(super) words: String,
-    /// The first and the last frame of which it may speak: those of its mentions, or, where it has none, those from the
-    /// clause before it to the one behind it.
+    /// The first and the last frame of which it may speak: those of its mentions, where it ends with a thing up to the clause
+    /// behind it, and, where it has no mention, those from the clause before it to the one behind it.
     pub(super) frames: RangeInclusive<usize>,
 }
 
@@ -35,26 +36,38 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
             _ => parts.push((number, vec![&token.word], token.span)),
         }
     }
-    let mut told: Vec<(String, Option<RangeInclusive<usize>>)> = Vec::new();
+    let mut told: Vec<Told> = Vec::new();
     for (_, words, span) in parts {
         let own: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
         if own.is_empty() {
             continue;
         }
-        let here = written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
-        let frames: Vec<usize> = here.map(|mention| mention.frame).collect();
-        let range = frames.iter().min().zip(frames.iter().max()).map(|(first, last)| *first..=*last);
-        told.push((own.join(" "), range));
+        let here = || written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
+        let frames: Vec<usize> = here().map(|mention| mention.frame).collect();
+        let range = frames.iter().min().zip(frames.iter().max()).map(|(first, last)| (*first, *last));
+        let is_thing = here().last().is_some_and(|mention| mention.kind == MentionKind::Landmark);
+        told.push(Told { words: own.join(" "), range, is_thing });
     }
     (0..told.len())
         .map(|at| {
-            let before = told[..at].iter().rev().find_map(|(_, frames)| frames.as_ref()).map_or(0, |f| *f.end());
-            let behind =
-                told[at + 1..].iter().find_map(|(_, frames)| frames.as_ref()).map_or(usize::MAX, |f| *f.start());
-            let between = before.min(behind)..=before.max(behind);
-            Clause { words: told[at].0.clone(), frames: told[at].1.clone().unwrap_or(between) }
+            let before = told[..at].iter().rev().find_map(|told| told.range).map_or(0, |(_, last)| last);
+            let behind = told[at + 1..].iter().find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
+            let (first, last) = match told[at].range {
+                // A thing is mapped to the first frame that shows it, and may be reached only later.
+                Some((first, last)) if told[at].is_thing => (first, last.max(behind)),
+                Some(range) => range,
+                None => (before.min(behind), before.max(behind)),
+            };
+            Clause { words: told[at].words.clone(), frames: first..=last }
         })
         .collect()
+}
+
+/// A clause in the making: its words, the first and last frame of its mentions, and whether the last of these is a thing.
+struct Told {
+    words: String,
+    range: Option<(usize, usize)>,
+    is_thing: bool,
 }
 
 fn is_joint(word: &str) -> bool {

@@ -139,7 +139,8 @@ impl Labelled {
 }
 
 /// Whether a thing can be taken away: doors and stairs stay where the way leads through them.
-fn can_go(name: &str) -> bool {
+#[must_use]
+pub fn can_go(name: &str) -> bool {
     let is_built_in = |class: Class| matches!(class, Class::Door | Class::Stairs | Class::Fabric);
     thing(name).is_none_or(|thing| !is_built_in(thing.class))
 }

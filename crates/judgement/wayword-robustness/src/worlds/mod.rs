@@ -15,7 +15,7 @@ mod tilt;
 
 pub use altered::{Alter, Altered, Look};
 pub use camera::{CameraHeight, FieldOfView};
-pub use edits::{Labelled, Telling, Thing};
+pub use edits::{Labelled, Telling, Thing, can_go};
 pub use eye::{EyeOf, ScriptedEye};
 pub use pictures::PictureChange;
 pub use poses::HeadingNoise;
