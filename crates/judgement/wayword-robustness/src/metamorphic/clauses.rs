@@ -10,8 +10,8 @@ use wayword_language::{reading, text::tokens};
 pub(super) struct Clause {
     /// Its words in lower case, without what joins it to the clause before.
     pub(super) words: String,
-    /// The first and the last frame of which it may speak: those of its mentions, where it ends with a thing up to the clause
-    /// behind it, and, where it has no mention, those from the clause before it to the one behind it.
+    /// The first and the last frame of which it may speak: those of its mentions, where it ends with a thing up to the next turn
+    /// or room, and, where it has no mention, those from the clause before it to the one behind it.
     pub(super) frames: RangeInclusive<usize>,
 }
 
@@ -52,9 +52,11 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
         .map(|at| {
             let before = told[..at].iter().rev().find_map(|told| told.range).map_or(0, |(_, last)| last);
             let behind = told[at + 1..].iter().find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
+            let mut later = told[at + 1..].iter().filter(|told| !told.is_thing);
+            let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
             let (first, last) = match told[at].range {
                 // A thing is mapped to the first frame that shows it, and may be reached only later.
-                Some((first, last)) if told[at].is_thing => (first, last.max(behind)),
+                Some((first, last)) if told[at].is_thing => (first, last.max(fixed)),
                 Some(range) => range,
                 None => (before.min(behind), before.max(behind)),
             };

@@ -1,9 +1,9 @@
 //! What a text draws by chance. Each draw has a name, so that no draw depends on those before it: what a thing draws stays as it
 //! is where another thing comes or goes.
 
-use super::Brief;
+use super::{Brief, Complaint};
 use rand_chacha::ChaCha8Rng;
-use wayword_core::{rng, seed};
+use wayword_core::{Check, Verdict, rng, seed};
 
 /// Draws by name.
 #[derive(Debug, Clone, Copy)]
@@ -12,9 +12,10 @@ pub(super) struct Dice {
 }
 
 impl Dice {
-    /// The draws of one text.
+    /// The draws of one text. Where only landmarks of earlier texts were wrong, it draws what they drew, and the writer
+    /// avoids the landmarks.
     pub(super) fn of(brief: &Brief<'_>) -> Self {
-        let (attempt, candidate) = (brief.complaints.len().to_string(), brief.candidate.to_string());
+        let (attempt, candidate) = (drawn_before(brief.complaints).to_string(), brief.candidate.to_string());
         let names = ["rules", &brief.style.name, &brief.walk.path.id, &attempt, &candidate];
         Self { seed: seed::derive(brief.seed, &names) }
     }
@@ -33,4 +34,14 @@ impl Dice {
     pub(super) fn at(self, purpose: &str, frame: usize) -> ChaCha8Rng {
         self.by(&[purpose, &frame.to_string()])
     }
+}
+
+/// How many of the earlier texts have to be drawn anew: those with other faults than landmarks, and those that came twice.
+fn drawn_before(complaints: &[Complaint]) -> usize {
+    let has_other_faults = |complaint: &Complaint| {
+        let mut faults = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
+        faults.any(|finding| finding.check != Check::Landmarks || finding.span.is_none())
+    };
+    let came_before = |at: usize| complaints[..at].iter().any(|before| before.text == complaints[at].text);
+    (0..complaints.len()).filter(|at| has_other_faults(&complaints[*at]) || came_before(*at)).count()
 }
