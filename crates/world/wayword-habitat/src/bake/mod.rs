@@ -1,6 +1,7 @@
 //! Bakes navmeshes for scenes that have none, as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
 
 mod contours;
+mod voxels;
 
 use crate::{
     axes::habitat_from_wayword,
@@ -126,7 +127,7 @@ impl Voxels {
         mesh.mark_walkable_triangles(settings.agent_max_slope_deg.to_radians());
         let (cell_size, cell_height) = (settings.cell_size_m, settings.cell_height_m);
         let mut solid = HeightfieldBuilder { aabb, cell_size, cell_height }.build()?;
-        solid.rasterize_triangles(&mesh, self.climb)?;
+        voxels::fill(&mut solid, &mesh, self.climb)?;
         let [obstacles, ledges, ceilings, _] = settings.switches.map(|switch| switch != 0);
         if obstacles {
             solid.filter_low_hanging_walkable_obstacles(self.climb);
