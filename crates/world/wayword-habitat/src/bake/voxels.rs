@@ -47,3 +47,15 @@ fn quarters([a, b, c]: [Vec3A; 3]) -> [[Vec3A; 3]; 4] {
     let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quarters_are_as_large_as_the_whole() {
+        let area = |[a, b, c]: [Vec3A; 3]| (b - a).cross(c - a).length();
+        let leaf = [[0.19, 0.29, -4.9], [0.18, 0.29, -4.85], [0.32, 0.31, -4.85]].map(Vec3A::from);
+        assert!((quarters(leaf).map(area).iter().sum::<f32>() / area(leaf) - 1.0).abs() < 1e-4);
+    }
+}
