@@ -45,7 +45,7 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
         let here = || written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
         let frames: Vec<usize> = here().map(|mention| mention.frame).collect();
         let range = frames.iter().min().zip(frames.iter().max()).map(|(first, last)| (*first, *last));
-        let is_thing = here().last().is_some_and(|mention| mention.kind == MentionKind::Landmark);
+        let is_thing = here().next_back().is_some_and(|mention| mention.kind == MentionKind::Landmark);
         told.push(Told { words: own.join(" "), range, is_thing });
     }
     (0..told.len())
