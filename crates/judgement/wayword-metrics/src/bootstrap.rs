@@ -85,12 +85,21 @@ pub(crate) fn interval_of<const N: usize>(
             values.extend(Some(value).filter(|value| value.is_finite()));
         }
     }
-    let tail = (1.0 - drawing.level.clamp(0.0, 1.0)) / 2.0;
-    found.map(|mut values| {
-        values.sort_unstable_by(f64::total_cmp);
-        let at = |share| if values.is_empty() { f64::NAN } else { quantile(&values, share) };
-        (at(tail), at(1.0 - tail))
+    found.map(|values| {
+        percentile_interval(values, drawing.level).map_or((f64::NAN, f64::NAN), |[low, high]| (low, high))
     })
+}
+
+/// The ends of the interval that leaves out as many of the values on either side, so that it holds the share `level` of them;
+/// `None` of no values.
+#[must_use]
+pub fn percentile_interval(mut values: Vec<f64>, level: f64) -> Option<[f64; 2]> {
+    if values.is_empty() {
+        return None;
+    }
+    values.sort_unstable_by(f64::total_cmp);
+    let tail = (1.0 - level.clamp(0.0, 1.0)) / 2.0;
+    Some([tail, 1.0 - tail].map(|share| quantile(&values, share)))
 }
 
 #[derive(Debug, Clone, Copy, Default)]

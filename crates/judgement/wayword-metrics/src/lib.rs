@@ -13,7 +13,7 @@ mod study;
 mod trajectory;
 mod words;
 
-pub use bootstrap::{Estimate, clustered_interval, clustered_interval_of};
+pub use bootstrap::{Estimate, clustered_interval, clustered_interval_of, percentile_interval};
 pub use correlation::{kendall_tau_b, pearson, spearman};
 pub use mcnemar::McNemar;
 pub use similarity::{Drawing, Said, Similarity, similarity};

@@ -4,7 +4,7 @@ use crate::agreement::Agreement;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_core::seed::derive;
-use wayword_metrics::Estimate;
+use wayword_metrics::{Estimate, percentile_interval};
 
 /// R needs so many paths.
 pub const LEAST_PATHS: usize = 30;
@@ -146,23 +146,10 @@ fn interval(scenes: &[Sum], all: &Sum, name: &str, drawing: Drawing) -> Estimate
     };
     let resampled = |resample: usize| (0..scenes.len()).fold(Sum::default(), |sum, at| sum.plus(draw(resample, at)));
     let apart = |sum: &Sum| sum.mean(1) - sum.mean(2) > f64::EPSILON;
-    let mut ratios: Vec<f64> =
-        (0..drawing.resamples.max(1)).map(resampled).filter(apart).map(|sum| sum.ratio()).collect();
-    ratios.sort_unstable_by(f64::total_cmp);
-    let tail = (1.0 - drawing.level) / 2.0;
-    let quantile = |share: f64| {
-        let at = share * ratios.len().saturating_sub(1) as f64;
-        let (below, above) = (ratios.get(at.floor() as usize)?, ratios.get(at.ceil() as usize)?);
-        Some(below + (above - below) * at.fract())
-    };
+    let ratios = (0..drawing.resamples.max(1)).map(resampled).filter(apart).map(|sum| sum.ratio()).collect();
     let mean = all.ratio();
-    Estimate {
-        mean,
-        low: quantile(tail).unwrap_or(mean),
-        high: quantile(1.0 - tail).unwrap_or(mean),
-        values: all.paths,
-        clusters: scenes.len(),
-    }
+    let [low, high] = percentile_interval(ratios, drawing.level).unwrap_or([mean; 2]);
+    Estimate { mean, low, high, values: all.paths, clusters: scenes.len() }
 }
 
 /// Change of R for one more of a dose's unit: the slope of the line of least squares. `None` of fewer than two doses.

@@ -5,7 +5,7 @@ use rand::Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::rng;
-use wayword_metrics::kendall_tau_b;
+use wayword_metrics::{kendall_tau_b, percentile_interval};
 
 /// An agent's success by one text.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -127,7 +127,7 @@ fn shares(table: &Table, drawing: Drawing) -> Option<Shares> {
         }
     }
     let with_interval = |at: usize| {
-        let [low, high] = quantiles(&drawn[at], drawing.level).unwrap_or([found[at]; 2]);
+        let [low, high] = percentile_interval(drawn[at].clone(), drawing.level).unwrap_or([found[at]; 2]);
         [found[at], low, high]
     };
     Some(Shares { scene: with_interval(0), path: with_interval(1), set: with_interval(2), rest: with_interval(3) })
@@ -203,24 +203,11 @@ pub fn rankings(followed: &[Followed], drawing: Drawing) -> Vec<Ranking> {
         Ranking {
             one: sets[one].to_owned(),
             other: sets[other].to_owned(),
-            interval: tau_b.and_then(|_| quantiles(&taus, drawing.level)),
+            interval: tau_b.and_then(|_| percentile_interval(taus, drawing.level)),
             tau_b,
         }
     };
     pairs.map(of_pair).collect()
-}
-
-/// The ends of a percentile interval.
-fn quantiles(values: &[f64], level: f64) -> Option<[f64; 2]> {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let tail = (1.0 - level) / 2.0;
-    let at = |share: f64| {
-        let at = share * sorted.len().saturating_sub(1) as f64;
-        let (below, above) = (sorted.get(at.floor() as usize)?, sorted.get(at.ceil() as usize)?);
-        Some(below + (above - below) * at.fract())
-    };
-    Some([at(tail)?, at(1.0 - tail)?])
 }
 
 #[cfg(test)]
