@@ -80,11 +80,17 @@ fn what_means_nothing_is_refused_with_the_reason() {
     );
 }
 
-#[test]
-fn the_same_poses_are_seen_on_other_platforms() {
+/// A folder with a run of one path through a generated house.
+fn with_a_house_run() -> Building {
     let building = Building::new();
     let ran = building.wayword(&["generate", "--paths", "1", "--style", "r2r", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
+    building
+}
+
+#[test]
+fn the_same_poses_are_seen_on_other_platforms() {
+    let building = with_a_house_run();
     let ran = robustness(&building, &["--change", "platform=habitat", "--change", "platform=recording"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     assert!(ran.err.contains("platform=recording means nothing here: a recording has no labels"), "{}", ran.err);
@@ -97,9 +103,7 @@ fn the_same_poses_are_seen_on_other_platforms() {
 
 #[test]
 fn an_eye_sees_a_recording_of_the_path() {
-    let building = Building::new();
-    let ran = building.wayword(&["generate", "--paths", "1", "--style", "r2r", "--out", "run"]);
-    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let building = with_a_house_run();
     let ran = robustness(&building, &["--eye", "recall=1", "--change", "platform=recording"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let lines: Vec<Value> = texts(&building).lines().map(|line| serde_json::from_str(line).unwrap()).collect();

@@ -65,12 +65,13 @@ impl Elsewhere {
     fn filmed(base: &Base, world: &dyn Platform, folder: &FilePath) -> Result<Self, Error> {
         film::make(base, world, folder)?;
         let platform = platforms::open_named("recording", Some(folder), None, None)?;
+        let there = platform.scenes()?;
         let (mut scene_of, mut base_of) = (BTreeMap::new(), BTreeMap::new());
         for path in &base.paths {
             let name = film::name(path);
-            if let Some(scene) = platform.scenes()?.into_iter().find(|scene| scene.as_str() == name) {
+            if let Some(scene) = there.iter().find(|scene| scene.as_str() == name) {
                 scene_of.insert(name, scene.clone());
-                base_of.insert(scene, path.scene.clone());
+                base_of.insert(scene.clone(), path.scene.clone());
             }
         }
         Ok(Self { platform, scene_of, base_of, is_film: true })
