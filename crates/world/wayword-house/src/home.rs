@@ -63,24 +63,26 @@ impl Home {
         })
     }
 
-    /// The view from a pose, with a picture of this size in pixels.
-    pub(super) fn view(&self, pose: Pose, gaze: Gaze, size: [u32; 2]) -> Result<View, PlatformError> {
+    /// The view from a pose, as it fills a picture of this size in pixels; with the picture if `pictured`.
+    pub(super) fn view(&self, pose: Pose, gaze: Gaze, size: [u32; 2], pictured: bool) -> Result<View, PlatformError> {
         let camera = Camera::level(pose.position, gaze, size);
-        let picture = self.scene.picture(&camera).map_err(|error| self.refused(&error))?;
+        let drawn = if pictured { self.scene.picture(&camera) } else { self.scene.ids(&camera) };
+        let picture = drawn.map_err(|error| self.refused(&error))?;
         let truth = GroundTruth {
             lists_objects: true,
             labels: labels(&self.scene, &camera, gaze, &picture),
             room: self.room_seen(pose.position, gaze.heading),
         };
-        let image = Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.refused(&error))?;
+        let image = || Image::new(picture.width, picture.height, picture.rgb).map_err(|error| self.refused(&error));
+        let image = pictured.then(image).transpose()?.map(Arc::new);
         let pose = Pose::level(pose.position, gaze.heading);
-        Ok(View::new(pose, gaze.horizontal_fov_rad, Some(Arc::new(image)), Some(truth)))
+        Ok(View::new(pose, gaze.horizontal_fov_rad, image, Some(truth)))
     }
 
     /// How far away is what the view from a pose shows.
     pub(super) fn depth(&self, pose: Pose, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
         let picture =
-            self.scene.picture(&Camera::level(pose.position, gaze, size)).map_err(|error| self.refused(&error))?;
+            self.scene.ids(&Camera::level(pose.position, gaze, size)).map_err(|error| self.refused(&error))?;
         Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
     }
 
@@ -114,7 +116,7 @@ impl Home {
     pub(super) fn labels_around(&self, pose: Pose) -> Result<Vec<Label>, PlatformError> {
         let mut all = Vec::new();
         for gaze in Gaze::around(pose.heading) {
-            let view = self.view(pose, gaze, [320, 240])?;
+            let view = self.view(pose, gaze, [320, 240], false)?;
             all.extend(view.ground_truth().into_iter().flat_map(|truth| truth.labels.iter().cloned()));
         }
         Ok(all)

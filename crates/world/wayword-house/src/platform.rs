@@ -60,6 +60,12 @@ impl HousePlatform {
     fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
         self.ready.get_or_make(scene.clone(), || Home::build(scene))
     }
+
+    fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
+        let home = self.home(scene)?;
+        home.check(from)?;
+        home.view(from.pose, flat(gaze), [self.options.width_px, self.options.height_px], pictured)
+    }
 }
 
 impl Default for HousePlatform {
@@ -88,9 +94,11 @@ impl Platform for HousePlatform {
     }
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        let home = self.home(scene)?;
-        home.check(from)?;
-        home.view(from.pose, flat(gaze), [self.options.width_px, self.options.height_px])
+        self.seen(scene, from, gaze, true)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.seen(scene, from, gaze, false)
     }
 
     fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {

@@ -7,7 +7,7 @@ use super::{
 };
 use std::collections::BTreeMap;
 use wayword_core::{FromAbove, ViewpointGraph};
-use wayword_render::{Background, Camera, Filter, Picture, RenderError, Scene, SceneError, render, storey};
+use wayword_render::{Background, Camera, Filter, Picture, RenderError, Scene, SceneError, render, render_ids, storey};
 
 /// A house with its meshes and the objects behind the numbers in its pictures.
 #[derive(Debug)]
@@ -38,6 +38,14 @@ impl HouseScene {
     /// When the camera's numbers are not usable.
     pub fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
         render(&self.scene, camera)
+    }
+
+    /// The same without colours, which takes less time.
+    ///
+    /// # Errors
+    /// When the camera's numbers are not usable.
+    pub fn ids(&self, camera: &Camera) -> Result<Picture, RenderError> {
+        render_ids(&self.scene, camera)
     }
 
     /// A storey (the lowest is 1) from above, around its viewpoints; `None` where there are none.

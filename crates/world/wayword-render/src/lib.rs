@@ -58,7 +58,7 @@ pub use evident::{box_corners, evident_objects};
 pub use mesh::{Material, Mesh};
 pub use panorama::{Panorama, PanoramaError, Quarter, panorama};
 pub use picture::{MAX_SIDE_PX, Picture, RenderError};
-pub use render::render;
+pub use render::{render, render_ids};
 pub use scene::{Filter, MAX_COORDINATE_M, MAX_TRIANGLES, Scene, SceneError};
 pub use storey::storey;
 pub use texture::{MAX_TEXTURE_SIDE, Texture, TextureError};

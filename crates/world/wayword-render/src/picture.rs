@@ -10,7 +10,7 @@ pub struct Picture {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Gamma-encoded sRGB, three bytes per pixel.
+    /// Gamma-encoded sRGB, three bytes per pixel; empty where it was drawn without colours.
     pub rgb: Vec<u8>,
     /// Distance along the camera's forward axis at the pixel's centre; `f32::INFINITY` where nothing is.
     pub depth_m: Vec<f32>,

@@ -10,7 +10,6 @@ use glam::{Vec2, Vec3};
 /// One triangle, prepared for shading its pixels.
 pub(crate) struct Shader<'a> {
     scene: &'a Scene,
-    id: u32,
     material: &'a Material,
     /// The corners, in sub-pixel steps.
     corners: [[i64; 2]; 3],
@@ -25,15 +24,13 @@ impl<'a> Shader<'a> {
     pub(crate) fn new(scene: &'a Scene, view: &View, batches: &[Batch], seen: Seen) -> Self {
         let batch = &batches[seen.batch as usize];
         let triangle = &batch.triangles[seen.place as usize];
-        let surface = &scene.surfaces[batch.surface as usize];
-        let material = &scene.materials[surface.material];
+        let material = &scene.materials[scene.surfaces[batch.surface as usize].material];
         let vertices = scene.soup.triangles[triangle.triangle as usize].corners.map(|v| v as usize);
         let uvs = vertices.map(|v| scene.soup.uvs[v]);
         let [r, g, b, _] = material.base_colour;
         let light = vertices.map(|v| Vec3::from(scene.soup.colours[v]) * Vec3::new(r, g, b));
         Self {
             scene,
-            id: surface.id,
             material,
             corners: triangle.corners.map(|c| [i64::from(c.x), i64::from(c.y)]),
             inverse_area: 1.0 / triangle.area() as f32,
@@ -41,10 +38,6 @@ impl<'a> Shader<'a> {
             uvs: triangle.at_corners(batch, uvs),
             light: triangle.at_corners(batch, light),
         }
-    }
-
-    pub(crate) fn id(&self) -> u32 {
-        self.id
     }
 
     /// Texture times base colour times light at a pixel's centre.

@@ -39,5 +39,5 @@ pub fn top_down(
     let centre = DVec2::new(bounds_min.x, bounds_max.y) + half;
     let origin = DVec3::new(centre.x, centre.y, cut_height_m);
     let view = View::of_map(origin, 1.0 / metres_per_pixel, [width as u32, height as u32]);
-    Ok(draw(scene, &view, PAPER))
+    Ok(draw(scene, &view, Some(PAPER)))
 }

@@ -5,7 +5,7 @@
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 use wayword_render::{
-    Background, Camera, Filter, Material, Mesh, Picture, Scene, Texture, render, top_down, visible_objects,
+    Background, Camera, Filter, Material, Mesh, Picture, Scene, Texture, render, render_ids, top_down, visible_objects,
 };
 
 const BOTH_SIDES: Material = Material { base_colour: [1.0; 4], texture: None, double_sided: true };
@@ -51,6 +51,16 @@ fn a_square_falls_where_the_camera_projects_it() {
     assert!((f64::from(seen[0].nearest_m) - depth).abs() < 1e-5);
     assert!((f64::from(seen[0].median_m) - depth).abs() < 1e-5);
     assert_eq!(picture.depth_m[0], f32::INFINITY);
+}
+
+#[test]
+fn depths_and_ids_are_the_same_without_colours() {
+    let camera = camera(0.1, 0.05);
+    let meshes = vec![square(5, Vec3::new(0.5, 4.0, 1.5), 0.5), square(8, Vec3::new(-0.3, 6.0, 1.2), 0.9)];
+    let scene = Scene::new(meshes, vec![BOTH_SIDES], vec![]).unwrap();
+    let (coloured, plain) = (render(&scene, &camera).unwrap(), render_ids(&scene, &camera).unwrap());
+    assert!(covered(&plain) > 0 && plain.rgb.is_empty());
+    assert_eq!(plain, Picture { rgb: Vec::new(), ..coloured });
 }
 
 #[test]

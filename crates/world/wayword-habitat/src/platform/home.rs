@@ -23,7 +23,7 @@ use wayword_core::{
     DVec3, Depth, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Island, Label, ObjectId, PlatformError, Pose,
     SceneId, View, ViewpointGraph, ViewpointId,
 };
-use wayword_render::{Camera, RenderError, Scene, render, storey};
+use wayword_render::{Camera, RenderError, Scene, render, render_ids, storey};
 use wayword_world::seen_from;
 
 const MAX_NAVMESH: u64 = 1 << 30;
@@ -108,7 +108,7 @@ impl Home {
 
     /// How far away is what is seen from an eye.
     pub(super) fn depth(&self, eye: DVec3, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
-        let picture = render(&self.scene, &Camera::level(eye, gaze, size)).map_err(|error| self.refused(&error))?;
+        let picture = render_ids(&self.scene, &Camera::level(eye, gaze, size)).map_err(|error| self.refused(&error))?;
         Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
     }
 

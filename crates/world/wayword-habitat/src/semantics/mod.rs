@@ -12,7 +12,7 @@ pub(crate) use load::{SemanticFiles, load};
 
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, ObjectId};
-use wayword_render::{Camera, Picture, RenderError, Scene, render};
+use wayword_render::{Camera, Picture, RenderError, Scene, render, render_ids};
 use wayword_world::{object_names, region};
 
 /// An object of a scene.
@@ -58,6 +58,9 @@ pub(crate) struct Semantics {
 impl Semantics {
     /// The picture whose ids are the indices of things plus 1; 0 means no thing.
     fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
+        if self.by_colour.is_empty() {
+            return render_ids(&self.scene, camera);
+        }
         let mut picture = render(&self.scene, camera)?;
         let painted = picture.rgb.as_chunks::<3>().0;
         for (id, colour) in picture.ids.iter_mut().zip(painted).filter(|(id, _)| **id == load::PAINTED) {
