@@ -12,11 +12,11 @@
 
 mod common;
 
-use common::{Building, Ran, files};
+use common::{Building, Ran, files, free_port};
 use rand::Rng;
 use std::{
     env, fs,
-    net::{Ipv4Addr, SocketAddr, TcpListener},
+    net::TcpListener,
     path::{Path, PathBuf},
     process::{Command, Stdio},
     thread,
@@ -27,11 +27,6 @@ use wayword_live::{tdw, virtualhome};
 
 fn deaths() -> usize {
     env::var("WAYWORD_KILLS").map_or(1, |kills| kills.parse().unwrap())
-}
-
-/// A port that no program uses.
-fn free_port() -> SocketAddr {
-    TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
 
 /// Every file of a run folder except the lock.

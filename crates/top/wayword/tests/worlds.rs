@@ -6,14 +6,8 @@
 
 mod common;
 
-use common::{Building, Ran};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use common::{Building, Ran, free_port};
 use wayword_live::{tdw, virtualhome};
-
-/// A port that no program uses.
-fn free_port() -> SocketAddr {
-    TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
-}
 
 /// Instructions for two random paths, all of which pass their checks.
 fn generate(building: &Building, platform: &str, scene: &str, at: &str) -> Ran {

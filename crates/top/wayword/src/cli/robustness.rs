@@ -18,6 +18,7 @@ Examples:
   wayword robustness --run runs/houses --eye guesses-sides --change mirror --out runs/guesses
   wayword robustness --run runs/houses --change platform=habitat --out runs/elsewhere
       The same poses on another platform: the houses are saved as glTF and read as Habitat reads them.
+  wayword robustness --run runs/houses --change platform=virtualhome@http://127.0.0.1:8080 --scene-name house-3=home_2 --out runs/elsewhere
   wayword robustness --compared runs/table
       Mean and spread of each agent's success over the sets of a comparison, and where it varies.
 
@@ -43,6 +44,10 @@ pub struct Robustness {
     /// commas. It answers from the labels of the same pose; its recall falls and its mistakes rise with the dose.
     #[arg(long, value_name = "EYE")]
     pub eye: Option<String>,
+    /// The name that another platform has for a scene of the run, for `--change platform=`: SCENE=NAME. Give the flag several
+    /// times. [default: the same name]
+    #[arg(long, value_name = "SCENE=NAME")]
+    pub scene_name: Vec<String>,
     /// Use only the first N paths of the run.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub limit: Option<u32>,

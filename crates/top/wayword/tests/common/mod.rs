@@ -7,6 +7,7 @@ use std::{
     collections::BTreeMap,
     ffi::OsStr,
     fs,
+    net::{Ipv4Addr, SocketAddr, TcpListener},
     path::{Path, PathBuf},
     process::{Command, Stdio},
 };
@@ -16,6 +17,11 @@ use wayword_formats::jsonl::{self, Record};
 /// A folder with the made-up building in `data`. Dropping it removes the folder.
 pub(crate) struct Building {
     folder: TempDir,
+}
+
+/// A port that no program uses.
+pub(crate) fn free_port() -> SocketAddr {
+    TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap()
 }
 
 /// How a command ended, and what it printed.

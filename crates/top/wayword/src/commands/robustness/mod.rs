@@ -70,6 +70,9 @@ struct Kept {
     /// The scripted eye.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     eye: Option<String>,
+    /// The names of its scenes elsewhere.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    scene_names: BTreeMap<String, String>,
     /// Only this many paths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
@@ -194,6 +197,7 @@ fn begin(args: &Robustness, base: &Base, out: &FilePath) -> Result<run::Held, Er
         run: folder.canonicalize().map_err(Error::io(folder, "find"))?,
         walks: hash_of_file(&folder.join(run::file::WALKS))?,
         eye: args.eye.clone(),
+        scene_names: elsewhere::names(&args.scene_name)?,
         limit: args.limit,
         seed: args.seed,
     };
@@ -237,7 +241,7 @@ fn make(
         let left: Vec<&Path> = base.paths.iter().filter(|path| !journal.has(&key(&arm.id(), &path.id))).collect();
         let elsewhere = match arm {
             Arm::Changed(Change::Platform(spec)) if !left.is_empty() => {
-                Some(Elsewhere::open(spec, base, platform, out)?)
+                Some(Elsewhere::open(spec, base, platform, (out, &elsewhere::names(&args.scene_name)?))?)
             }
             _ => None,
         };

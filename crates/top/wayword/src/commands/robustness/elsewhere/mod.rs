@@ -33,12 +33,37 @@ pub(super) fn refusal(spec: &str) -> Option<String> {
     }
 }
 
+/// The names that scenes of a run have elsewhere, as they were typed: `SCENE=NAME`.
+///
+/// # Errors
+/// When one is typed in another way, or a scene is named twice.
+pub(super) fn names(typed: &[String]) -> Result<BTreeMap<String, String>, Error> {
+    let mut names = BTreeMap::new();
+    for text in typed {
+        let parts = text.split_once('=').filter(|(scene, name)| !scene.is_empty() && !name.is_empty());
+        let Some((scene, name)) = parts else {
+            let hint = "write the run's scene and its name there, as in --scene-name house-3=home_2";
+            return Err(Error::usage(format!("--scene-name {text}: there is no SCENE=NAME"), hint));
+        };
+        if names.insert(scene.to_owned(), name.to_owned()).is_some() {
+            return Err(Error::usage(format!("--scene-name: {scene} is named twice"), "leave one out"));
+        }
+    }
+    Ok(names)
+}
+
 impl Elsewhere {
-    /// Opens a platform. What it needs of the run is saved in a folder first, unless it is there.
+    /// Opens a platform. What it needs of the run is saved in a folder first, unless it is there. Its scenes have the names
+    /// of the run's scenes, but where they are given other ones.
     ///
     /// # Errors
     /// When that cannot be saved or opened, or it lacks a scene of the run.
-    pub(super) fn open(spec: &str, base: &Base, world: &dyn Platform, out: &FilePath) -> Result<Self, Error> {
+    pub(super) fn open(
+        spec: &str,
+        base: &Base,
+        world: &dyn Platform,
+        (out, names): (&FilePath, &BTreeMap<String, String>),
+    ) -> Result<Self, Error> {
         let Spec { name, data, at } = Spec::of(spec);
         if name == "recording" {
             return Self::filmed(base, world, &out.join("films"));
@@ -52,9 +77,12 @@ impl Elsewhere {
         let there = platform.scenes()?;
         let (mut scene_of, mut base_of) = (BTreeMap::new(), BTreeMap::new());
         for path in &base.paths {
-            let Some(scene) = there.iter().find(|scene| **scene == path.scene) else {
-                let problem = format!("--change platform={spec}: it has no scene {}, which the run has", path.scene);
-                return Err(Error::usage(problem, "name data that has all scenes of the run, under the same names"));
+            let called = names.get(path.scene.as_str()).map_or(path.scene.as_str(), String::as_str);
+            let Some(scene) = there.iter().find(|scene| scene.as_str() == called) else {
+                let problem =
+                    format!("--change platform={spec}: it has no scene {called} for {} of the run", path.scene);
+                let hint = "name data that has all scenes of the run, or give the name of each there, as in --scene-name house-3=home_2";
+                return Err(Error::usage(problem, hint));
             };
             scene_of.insert(path.scene.to_string(), scene.clone());
             base_of.insert(scene.clone(), path.scene.clone());
