@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """MuJoCo (pip install mujoco; tested with 4.0.0) as a world for Wayword. Without a screen it uses EGL.
 
-`mujoco_world.py MODEL.xml` serves your own models: objects are bodies with a name, and one walks on the geom named
-`floor`. Without an argument it serves flat.xml, which is beside this file.
+`mujoco_world.py MODEL.xml ...` serves your own models: objects are bodies with a name, of which what follows a # only
+tells namesakes apart, and one walks on the geom named `floor`. Without an argument it serves flat.xml, which is beside
+this file. house_mujoco.py makes models of generated houses.
 """
 import functools, math, os, pathlib, sys  # noqa: E401
 if "DISPLAY" not in os.environ:
@@ -12,6 +13,7 @@ import numpy as np  # noqa: E402
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 import wayword_platform as kit  # noqa: E402
 EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and the least distance to anything
+SHOWN = 0.0015  # what shows on a smaller share of a picture gets no label
 FILES = {name.stem: name for name in map(pathlib.Path, sys.argv[1:] or [pathlib.Path(__file__).with_name("flat.xml")])}
 
 
@@ -51,9 +53,11 @@ class MuJoCo(kit.OpenWorld):
         renderer.update_scene(data, eye)
         picture = renderer.render() if look.picture else None
         renderer.enable_segmentation_rendering()
-        bodies = {int(model.geom_bodyid[geom]) for geom in np.unique(renderer.render()[:, :, 0]) if geom >= 0}
+        seen = renderer.render()[:, :, 0]
         renderer.disable_segmentation_rendering()
-        names = [(body, model.body(body).name) for body in sorted(bodies) if body > 0]
+        count = np.bincount(model.geom_bodyid[seen[seen >= 0]], minlength=model.nbody)
+        bodies = np.flatnonzero(count >= SHOWN * seen.size).tolist()
+        names = [(body, model.body(body).name.split("#")[0]) for body in bodies if body > 0]
         return kit.View(picture, [kit.Label(str(body), name, data.xipos[body]) for body, name in names if name])
 
 
