@@ -74,6 +74,7 @@ def main(houses, out):
     print(f"{len(files)} houses; use --platform process --data {out / 'mujoco.json'}")
 
 
-if len(sys.argv) != 3:
-    sys.exit("usage: house_mujoco.py HOUSES OUT")
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("usage: house_mujoco.py HOUSES OUT")
+    main(*sys.argv[1:])
