@@ -165,24 +165,26 @@ pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| across / spread)
 }
 
-/// The doses at which R falls below `least`, first below the unchanged dose and then above it. Between two doses, and from the
-/// unchanged one, at which R is 1, the line is straight.
+/// The doses at which R falls below `least`, first below the unchanged dose and then above it; where no dose is unchanged, from
+/// the lowest dose on. Between two doses, and from the unchanged one, at which R is taken for 1, the line is straight.
 #[must_use]
-pub fn falls_at(points: &[(f64, f64)], unchanged: f64, least: f64) -> Vec<f64> {
+pub fn falls_at(points: &[(f64, f64)], unchanged: Option<f64>, least: f64) -> Vec<f64> {
     let one_way = |sign: f64| {
-        let mut ahead: Vec<(f64, f64)> =
-            points.iter().copied().filter(|(dose, _)| (dose - unchanged) * sign > 0.0).collect();
+        let is_ahead = |dose: f64| unchanged.is_none_or(|unchanged| (dose - unchanged) * sign > 0.0);
+        let mut ahead: Vec<(f64, f64)> = points.iter().copied().filter(|(dose, _)| is_ahead(*dose)).collect();
         ahead.sort_by(|a, b| (a.0 * sign).total_cmp(&(b.0 * sign)));
-        let mut before = (unchanged, 1.0);
+        let mut before = unchanged.map(|dose| (dose, 1.0));
         for point in ahead {
             if point.1 < least {
-                return Some(before.0 + (point.0 - before.0) * (before.1 - least) / (before.1 - point.1));
+                let between = |(dose, ratio): (f64, f64)| dose + (point.0 - dose) * (ratio - least) / (ratio - point.1);
+                return Some(before.map_or(point.0, between));
             }
-            before = point;
+            before = Some(point);
         }
         None
     };
-    [-1.0, 1.0].into_iter().filter_map(one_way).collect()
+    let ways: &[f64] = if unchanged.is_some() { &[-1.0, 1.0] } else { &[1.0] };
+    ways.iter().filter_map(|sign| one_way(*sign)).collect()
 }
 
 #[cfg(test)]
@@ -240,10 +242,11 @@ mod tests {
 
     #[test]
     fn the_dose_at_which_it_falls_lies_between_two() {
-        let falls = |points: &[(f64, f64)], unchanged: f64| falls_at(points, unchanged, 0.75);
+        let falls = |points: &[(f64, f64)], unchanged: f64| falls_at(points, Some(unchanged), 0.75);
         assert_eq!(falls(&[(1.0, 1.0), (3.0, 0.5)], 0.0), [2.0]);
         assert_eq!(falls(&[(60.0, 0.5), (120.0, 0.9)], 90.0), [75.0]);
         assert!(falls(&[(1.0, 0.9)], 0.0).is_empty());
+        assert_eq!(falls_at(&[(3.0, 0.5), (1.0, 1.0)], None, 0.75), [2.0]);
         assert_eq!(slope(&[(0.0, 1.0), (2.0, 0.5)]), Some(-0.25));
         assert_eq!(slope(&[(1.0, 0.5)]), None);
     }

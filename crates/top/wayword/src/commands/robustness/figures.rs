@@ -188,7 +188,7 @@ fn curves(measured: &[(&Change, OfChange)]) -> Vec<Curve> {
         let known: Vec<(f64, f64)> =
             curve.points.iter().filter_map(|(dose, r)| r.map(|r: Estimate| (*dose, r.mean))).collect();
         curve.slope = slope(&known);
-        curve.falls_at = curve.unchanged.map_or_else(Vec::new, |unchanged| falls_at(&known, unchanged, LEAST));
+        curve.falls_at = falls_at(&known, curve.unchanged, LEAST);
     }
     curves
 }

@@ -113,7 +113,7 @@ pub(crate) struct Curve {
     pub(crate) points: Vec<(f64, Option<Estimate>)>,
     /// Change of R for one more of the dose's unit; `None` of a single point.
     pub(crate) slope: Option<f64>,
-    /// The doses at which R falls below 0.8, below and above the unchanged one.
+    /// The doses at which R falls below 0.8, below and above the unchanged one where there is one.
     pub(crate) falls_at: Vec<f64>,
 }
 

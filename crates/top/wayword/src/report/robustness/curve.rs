@@ -100,9 +100,6 @@ impl Drawing {
         lines.extend(curve.unchanged.map(|dose| up("unchanged", dose, scale.ratios.0, scale.ratios.1)));
         lines.extend(known.iter().map(|(dose, r)| up("whisker", *dose, r.low, r.high)));
         let mut way: Vec<(f64, f64)> = known.iter().map(|(dose, r)| (*dose, r.mean)).collect();
-        let is_new = |unchanged: &f64| way.iter().all(|(dose, _)| (dose - unchanged).abs() > f64::EPSILON);
-        let unchanged = curve.unchanged.filter(is_new);
-        way.extend(unchanged.map(|dose| (dose, 1.0)));
         way.sort_by(|a, b| a.0.total_cmp(&b.0));
         let way: Vec<String> = way.iter().map(|(dose, r)| format!("{},{}", scale.x(*dose), scale.y(*r))).collect();
         Self {
