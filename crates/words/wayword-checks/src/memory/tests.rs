@@ -147,7 +147,15 @@ fn small_turns_to_one_side_are_one_bend_and_a_winding_way_has_none() {
     assert_eq!(bends(&[0.0, 35.0, -40.0, 0.0]), []);
     assert_eq!(bends(&[170.0, 0.0, 29.0]), [(0, 0, 170.0)]);
     let moves: Vec<_> = [0.0, 35.0, -40.0, 0.0].into_iter().map(step).collect();
-    assert_eq!(ways::bends(&moves, &[2]).len(), 2, "one turns into a room and on in it");
+    let (from, to) = ("bedroom".to_owned(), "hallway".to_owned());
+    let door = Opening { before: 1, behind: 2, from, to, has_door: true };
+    assert_eq!(ways::bends(&moves, &[door]).len(), 2, "one turns into a room and on in it");
+    for turns in [vec![0.0, 35.0, -40.0, 35.0], vec![0.0, 20.0, 50.0, 45.0, 20.0], vec![0.0, 30.0, 80.0, 20.0]] {
+        let back: Vec<f64> = std::iter::once(0.0).chain(turns[1..].iter().rev().map(|deg| -deg)).collect();
+        let (there, back) = (bends(&turns), bends(&back));
+        let mirrored: Vec<f64> = back.iter().rev().map(|(_, _, deg)| -deg).collect();
+        assert_eq!(there.iter().map(|(_, _, deg)| *deg).collect::<Vec<f64>>(), mirrored, "the way back of {turns:?}");
+    }
     let around = Bend { first: 0, last: 0, turn_rad: 170_f64.to_radians() };
     assert_eq!((around.side(), around.is_slight()), (Side::Behind, false));
 }

@@ -1,6 +1,8 @@
 //! The rooms, bends and flights of a walk.
 
+use super::Opening;
 use crate::Evidence;
+use std::{cmp::Ordering, ops::Range};
 use wayword_core::{Climb, Move, Side, motion};
 use wayword_language::lexicon::room_name;
 
@@ -78,57 +80,75 @@ const WINDING_M: f64 = 2.5;
 /// Several turns in a row are one bend up to this, degrees; beyond that they are turns of their own.
 const ONE_BEND_DEG: f64 = 135.0;
 
-/// The turns of a walk that are worth a word. `entered` are the frames at which another room begins.
-pub(super) fn bends(moves: &[Move], entered: &[usize]) -> Vec<Bend> {
+/// The turns of a walk that are worth a word; the same ones on the way back.
+pub(super) fn bends(moves: &[Move], openings: &[Opening]) -> Vec<Bend> {
     let mut bends: Vec<Bend> = Vec::new();
+    // The opening turn is a turn of its own: the walker does not walk before it.
     let mut at = 0;
     while at < moves.len() {
-        let last = last_of_bend(moves, at);
-        let turn_rad: f64 = moves[at..=last].iter().map(|step| step.turn_rad).sum();
-        let deg = turn_rad.to_degrees().abs();
-        if deg >= motion::SLIGHT_DEG {
-            bends.push(Bend { first: at, last, turn_rad });
-        }
-        at = last + 1;
+        let run = if at == 0 { 1 } else { run_of_turns(moves, at) };
+        joined(moves, at..at + run, &mut bends);
+        at += run;
     }
-    unwound(bends, moves, entered)
+    unwound(bends, moves, openings)
 }
 
-/// The last move of the bend that begins with a move: its own number, unless the moves after it turn on to the same
-/// side. It is what the checks take for one turn, too.
-fn last_of_bend(moves: &[Move], first: usize) -> usize {
-    let deg = |at: usize| moves[at].turn_rad.to_degrees();
-    let sign = deg(first).signum();
-    // The opening turn is a turn of its own: the walker does not walk before it.
-    let most = if first == 0 { 1 } else { motion::BEND_MOVES };
-    let same = |at: &usize| deg(*at) * sign >= motion::BEND_STEP_DEG;
-    let last = (first..moves.len()).take(most).take_while(same).last().unwrap_or(first);
-    let total = |last: usize| (first..=last).map(deg).sum::<f64>().abs();
-    let fits = |last: &usize| *last == first || (motion::BEND_DEG..=ONE_BEND_DEG).contains(&total(*last));
+fn turn_deg(moves: &[Move], at: usize) -> f64 {
+    moves[at].turn_rad.to_degrees()
+}
+
+/// How many moves from one on turn to its side.
+fn run_of_turns(moves: &[Move], first: usize) -> usize {
+    let sign = turn_deg(moves, first).signum();
+    let same = (first + 1..moves.len()).take_while(|at| turn_deg(moves, *at) * sign >= motion::BEND_STEP_DEG);
+    let turns = turn_deg(moves, first).abs() >= motion::BEND_STEP_DEG;
+    if turns { 1 + same.count() } else { 1 }
+}
+
+/// The bends of moves that turn to one side, in order: where some of them are one bend, the longest such part comes first, then
+/// the one that turns farthest.
+fn joined(moves: &[Move], run: Range<usize>, bends: &mut Vec<Bend>) {
+    let total = |part: &Range<usize>| part.clone().map(|at| turn_deg(moves, at)).sum::<f64>().abs();
+    let parts =
+        run.clone().flat_map(|first| (first + 2..=run.end.min(first + motion::BEND_MOVES)).map(move |end| first..end));
+    let fits = |part: &Range<usize>| (motion::BEND_DEG..=ONE_BEND_DEG).contains(&total(part));
     // A turn that is one by itself and is followed by another such is not joined with it.
-    let is_full = |at: usize| deg(at).abs() >= motion::FULL_DEG;
-    let joins = |last: &usize| (first..=*last).filter(|at| is_full(*at)).count() <= 1;
-    (first..=last).rev().find(|last| fits(last) && joins(last)).unwrap_or(first)
+    let is_full = |at: &usize| turn_deg(moves, *at).abs() >= motion::FULL_DEG;
+    let joins = |part: &Range<usize>| part.clone().filter(is_full).count() <= 1;
+    let far = |part: &Range<usize>| (part.len(), total(part));
+    let best = parts
+        .filter(|part| fits(part) && joins(part))
+        .max_by(|a, b| far(a).partial_cmp(&far(b)).unwrap_or(Ordering::Equal));
+    let Some(part) = best else {
+        let worth_a_word = |at: &usize| turn_deg(moves, *at).abs() >= motion::SLIGHT_DEG;
+        bends.extend(run.filter(worth_a_word).map(|at| Bend { first: at, last: at, turn_rad: moves[at].turn_rad }));
+        return;
+    };
+    joined(moves, run.start..part.start, bends);
+    let turn_rad = part.clone().map(|at| moves[at].turn_rad).sum();
+    bends.push(Bend { first: part.start, last: part.end - 1, turn_rad });
+    joined(moves, part.end..run.end, bends);
 }
 
-/// The bends without those that the next one takes back at once in the same room: a way that winds.
-fn unwound(bends: Vec<Bend>, moves: &[Move], entered: &[usize]) -> Vec<Bend> {
-    let mut kept: Vec<Bend> = Vec::new();
-    for bend in bends {
-        let takes_back = kept.last().is_some_and(|before| {
-            let between_m: f64 = moves[before.first..bend.first].iter().map(|step| step.distance_m).sum();
-            let net_deg = (before.turn_rad + bend.turn_rad).to_degrees().abs();
-            let both_slight = before.is_slight() && bend.is_slight();
-            let stays = !entered.iter().any(|frame| (before.first + 1..=bend.first).contains(frame));
-            before.first > 0 && stays && both_slight && net_deg < WINDING_DEG && between_m < WINDING_M
-        });
-        if takes_back {
-            kept.pop();
-        } else {
-            kept.push(bend);
-        }
+/// The bends without those that the next one takes back at once in the same room: a way that winds. The nearest two go first.
+fn unwound(mut bends: Vec<Bend>, moves: &[Move], openings: &[Opening]) -> Vec<Bend> {
+    let between_m = |pair: &[Bend]| moves[pair[0].last..pair[1].first].iter().map(|step| step.distance_m).sum::<f64>();
+    let takes_back = |pair: &[Bend]| {
+        let net_deg = (pair[0].turn_rad + pair[1].turn_rad).to_degrees().abs();
+        let both_slight = pair[0].is_slight() && pair[1].is_slight();
+        // One who stands in a door may be in either room.
+        let passes_a_door = |door: &Opening| door.before <= pair[1].first && door.behind >= pair[0].last;
+        pair[0].first > 0
+            && !openings.iter().any(passes_a_door)
+            && both_slight
+            && net_deg < WINDING_DEG
+            && between_m(pair) < WINDING_M
+    };
+    loop {
+        let winding = bends.windows(2).enumerate().filter(|(_, pair)| takes_back(pair));
+        let Some((at, _)) = winding.min_by(|a, b| between_m(a.1).total_cmp(&between_m(b.1))) else { return bends };
+        bends.drain(at..at + 2);
     }
-    kept
 }
 
 /// Two flights with no longer way between them are one that turns at a landing, metres.
