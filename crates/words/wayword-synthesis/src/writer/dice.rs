@@ -2,6 +2,7 @@
 //! is where another thing comes or goes.
 
 use super::{Brief, Complaint};
+use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Check, Verdict, rng, seed};
 
@@ -30,11 +31,19 @@ impl Dice {
         rng(self.seed, names)
     }
 
+    /// A share from 0 to 1 for the place of that number among several: places in a row get shares that lie apart.
+    pub(super) fn in_turn(self, purpose: &str, number: usize) -> f64 {
+        (self.by(&[purpose]).random_range(0.0..1.0) + number as f64 * GOLDEN).fract()
+    }
+
     /// What is drawn for one purpose at a frame.
     pub(super) fn at(self, purpose: &str, frame: usize) -> ChaCha8Rng {
         self.by(&[purpose, &frame.to_string()])
     }
 }
+
+/// Multiples of the golden ratio, without their whole parts, spread evenly.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// How many of the earlier texts have to be drawn anew: those with other faults than landmarks, and those that came twice.
 fn drawn_before(complaints: &[Complaint]) -> usize {

@@ -16,6 +16,8 @@ pub(super) struct Draft<'a> {
     told: Vec<Clause>,
     phrases: Vec<Phrase>,
     joints: Vec<Joint>,
+    /// How often each was said anew.
+    times: Vec<usize>,
     names: Names<'a>,
     /// Whether its last phrase is a task, which stays as it is.
     has_task: bool,
@@ -31,7 +33,8 @@ impl<'a> Draft<'a> {
             phrases.push(Phrase { text: task.to_owned(), is_clause: true });
         }
         let joints = joints(&told, &phrases, brief, dice);
-        Self { told, phrases, joints, names, has_task: task.is_some(), full_stop }
+        let times = vec![0; told.len()];
+        Self { told, phrases, joints, times, names, has_task: task.is_some(), full_stop }
     }
 
     /// The text, and where each of its phrases begins, in bytes.
@@ -54,12 +57,15 @@ impl<'a> Draft<'a> {
         (text, starts)
     }
 
-    /// Says a phrase of those within a span in another way, or joins it in another way.
+    /// Says a phrase of those within a span in another way, or joins it in another way: the one that was said anew least often.
     pub(super) fn reword(&mut self, span: [usize; 2], starts: &[usize], brief: &Brief<'_>, dice: Dice) {
-        let rng = &mut dice.by(&["reword"]);
         let first = starts.iter().rposition(|start| *start <= span[0]).unwrap_or(0);
         let end = starts.iter().position(|start| *start >= span[1]).unwrap_or(starts.len()).max(first + 1);
-        let at = rng.random_range(first..end);
+        let drawn = |at: usize| self.told[at].drawn("reword", dice).random::<u32>();
+        let Some(at) = (first..end).min_by_key(|at| (self.times[*at], drawn(*at))) else { return };
+        self.times[at] += 1;
+        let dice = dice.other(self.times[at]);
+        let rng = &mut self.told[at].drawn("reword", dice);
         let is_task = self.has_task && at + 1 == self.phrases.len();
         if at > first && self.joints[at] != Joint::Run && (is_task || rng.random_bool(0.5)) {
             self.joints[at] = self.other_joint(at, brief, rng);

@@ -2,16 +2,40 @@
 
 use super::{Brief, dice::Dice};
 use rand::Rng;
+use std::collections::BTreeMap;
 use wayword_checks::memory::Remembered;
 use wayword_core::{ObjectId, Side, Verdict};
-use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, normal, plural, thing};
+use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, kinds, normal, plural, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct Landmarks<'a> {
     brief: &'a Brief<'a>,
-    used: Vec<String>,
+    /// The names that are told otherwise: that of the target.
+    reserved: Vec<String>,
     avoided: Vec<String>,
     dice: Dice,
+}
+
+/// Where things are looked for: at a frame, from a salience on, for one use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Search {
+    /// The frame.
+    pub(super) frame: usize,
+    /// The least salience.
+    pub(super) salience: u8,
+    /// What for.
+    pub(super) to: Use,
+}
+
+/// A place in a text at which a thing may be told.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Spot {
+    /// Where things are looked for; of a thing that several find, the first counts.
+    pub(super) searches: Vec<Search>,
+    /// Whether a second thing beside it is told with it.
+    pub(super) pair: bool,
+    /// Whether it only stands in for another spot.
+    pub(super) is_spare: bool,
 }
 
 /// A landmark in words.
@@ -65,6 +89,12 @@ const WIDE_M: f64 = 1.2;
 const CHANCE: f64 = 1.5;
 /// How often much more is.
 const RARE: f64 = 0.2;
+/// How much less it counts for each search that found nothing before.
+const LATER_SEARCH: f64 = 2.0;
+/// How much less it counts at a spot that stands in for another.
+const SPARE: f64 = 1.0;
+/// How much more a thing is worth where one stops.
+const AT_THE_END: f64 = 1.0;
 
 /// What a landmark is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,87 +109,150 @@ pub(super) enum Use {
     Stop,
 }
 
+/// A kind of thing at the spot where it is told best.
+struct At<'a> {
+    spot: usize,
+    worth: f64,
+    seen: &'a Remembered,
+    /// The search that found it; `None` where it is only told beside another thing.
+    found_by: Option<Search>,
+}
+
+impl At<'_> {
+    /// Whether a thing is told better here than at another spot. What one stops at goes before what one passes.
+    fn goes_before(&self, other: &Self) -> bool {
+        let rank = |at: &At<'_>| (at.found_by.is_some(), at.worth + at.stop_bonus());
+        let ((is_found, worth), (other_is_found, other_worth)) = (rank(self), rank(other));
+        (is_found, worth) > (other_is_found, other_worth)
+    }
+
+    fn stop_bonus(&self) -> f64 {
+        if self.found_by.is_some_and(|search| search.to == Use::Stop) { AT_THE_END } else { 0.0 }
+    }
+}
+
+impl Search {
+    /// Where a second thing beside the one that it found is looked for.
+    fn beside(self) -> Self {
+        Self { to: if self.to == Use::Stop { Use::Stop } else { Use::Here }, ..self }
+    }
+}
+
 impl<'a> Landmarks<'a> {
-    /// Nothing chosen yet. It avoids names about which checks complained in earlier texts, and the target, which the
-    /// task names.
+    /// It avoids names about which checks complained in earlier texts, and the target, which the task names.
     pub(super) fn new(brief: &'a Brief<'a>, dice: Dice) -> Self {
         let blamed = brief.complaints.iter().flat_map(|complaint| {
             let failed = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
             failed.filter_map(|finding| complaint.text.get(finding.span?[0]..finding.span?[1])).map(normal)
         });
         let target = brief.walk.path.target.as_ref().map(|target| normal(&target.name));
-        Self { brief, used: target.into_iter().collect(), avoided: blamed.collect(), dice }
+        Self { brief, reserved: target.into_iter().collect(), avoided: blamed.collect(), dice }
     }
 
-    /// Whether a name may still be used.
+    /// Whether a name may be used.
     fn is_free(&self, name: &str) -> bool {
-        let known = |names: &[String]| names.iter().any(|other| agree(other, name));
-        !known(&self.used)
+        !self.reserved.iter().any(|other| agree(other, name))
             && !self.avoided.iter().any(|blamed| *blamed == normal(name) || blamed.ends_with(&normal(name)))
     }
 
     /// Keeps a name from being used as a landmark.
     pub(super) fn reserve(&mut self, name: &str) {
-        self.used.push(normal(name));
+        self.reserved.push(normal(name));
     }
 
     /// The landmark of at least that salience that identifies a frame best, if there is one.
-    pub(super) fn choose(&mut self, frame: usize, salience: u8) -> Option<Landmark> {
-        self.find(frame, salience, Use::Here)
+    pub(super) fn choose(&self, frame: usize, salience: u8) -> Option<Landmark> {
+        let search = Search { frame, salience, to: Use::Here };
+        let found = self.brief.memory.seen_from(frame).filter(|seen| self.finds(search, seen));
+        let best = found.max_by(|a, b| self.worth(a, search).total_cmp(&self.worth(b, search)))?;
+        Some(self.landmark(best, frame))
     }
 
-    /// The same for one use.
-    pub(super) fn find(&mut self, frame: usize, salience: u8, to: Use) -> Option<Landmark> {
-        let memory = self.brief.memory;
-        let told = memory
-            .seen_from(frame)
-            .filter(|seen| is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, to));
+    /// The landmark of each spot, where there is one. Each kind of thing belongs to the one spot where it is told best, whatever
+    /// other things there are, and each spot tells the best of its own: a thing that comes or goes changes no other spot.
+    pub(super) fn at(&self, spots: &[Spot]) -> Vec<Option<Landmark>> {
+        let mut homes: BTreeMap<String, At<'_>> = BTreeMap::new();
+        for seen in self.brief.memory.things.iter().filter(|seen| self.is_free(&seen.name)) {
+            let Some(best) = self.best_spot(seen, spots) else { continue };
+            let kind = kinds(&seen.name).swap_remove(0);
+            match homes.get_mut(&kind) {
+                Some(home) if !best.goes_before(home) => {}
+                Some(home) => *home = best,
+                None => {
+                    homes.insert(kind, best);
+                }
+            }
+        }
+        let of_spot = |number: usize| homes.values().filter(move |home| home.spot == number);
+        (0..spots.len())
+            .map(|number| {
+                let found = of_spot(number).filter(|home| home.found_by.is_some());
+                let best = found.max_by(|a, b| a.worth.total_cmp(&b.worth))?;
+                let search = best.found_by?;
+                let landmark = self.landmark(best.seen, search.frame);
+                let others = of_spot(number).filter(|home| home.seen != best.seen);
+                let with = self.beside(best.seen, search, others).filter(|_| spots[number].pair);
+                Some(Landmark { with, ..landmark })
+            })
+            .collect()
+    }
+
+    /// The spot where a thing is told best.
+    fn best_spot(&self, seen: &'a Remembered, spots: &[Spot]) -> Option<At<'a>> {
+        let at = |(spot, Spot { searches, pair, is_spare }): (usize, &Spot)| {
+            let found = searches.iter().enumerate().find(|(_, search)| self.finds(**search, seen));
+            if let Some((rank, search)) = found {
+                let less = LATER_SEARCH * rank as f64 + if *is_spare { SPARE } else { 0.0 };
+                let worth = self.worth(seen, *search) - less;
+                return Some(At { spot, worth, seen, found_by: Some(*search) });
+            }
+            let beside = searches.first().filter(|_| *pair)?;
+            let here = Search { salience: 1, ..beside.beside() };
+            self.finds(here, seen).then(|| At { spot, worth: self.worth(seen, here), seen, found_by: None })
+        };
+        let mut best: Option<At<'a>> = None;
+        for found in spots.iter().enumerate().filter_map(at) {
+            if best.as_ref().is_none_or(|before| found.goes_before(before)) {
+                best = Some(found);
+            }
+        }
+        best
+    }
+
+    /// Whether a search finds a thing.
+    fn finds(&self, Search { frame, salience, to }: Search, seen: &Remembered) -> bool {
+        seen.glimpse(frame).is_some()
+            && is_tellable(&seen.name, salience)
+            && self.is_free(&seen.name)
+            && self.fits(seen, frame, to)
+    }
+
+    /// What a thing is worth as the landmark that a search finds.
+    fn worth(&self, seen: &Remembered, Search { frame, to, .. }: Search) -> f64 {
         // Now and then anything will do, so that texts differ.
         let chance = if self.dice.at("rare", frame).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
-        let ahead = |seen: &Remembered| if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
-        let drawn = |seen: &Remembered| {
-            let mut rng = self.dice.by(&["thing", &frame.to_string(), identity(seen)]);
-            rng.random_range(0.0..chance)
-        };
-        let scored = told.map(|seen| (self.score(seen, frame) + ahead(seen) + drawn(seen), seen));
-        let (_, best) = scored.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        self.used.push(normal(&best.name));
-        Some(self.landmark(best, frame))
+        let ahead = if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
+        let mut drawn = self.dice.by(&["thing", &frame.to_string(), identity(seen)]);
+        self.score(seen, frame) + ahead + drawn.random_range(0.0..chance)
     }
 
-    /// The best landmark at a frame that is still free, without taking it.
-    pub(super) fn peek(&self, frame: usize, salience: u8) -> Option<Landmark> {
-        let told = self.brief.memory.seen_from(frame).filter(|seen| {
-            is_tellable(&seen.name, salience) && self.is_free(&seen.name) && self.fits(seen, frame, Use::Onward)
-        });
-        let best = told.max_by(|a, b| self.score(a, frame).total_cmp(&self.score(b, frame)))?;
-        Some(self.landmark(best, frame))
-    }
-
-    /// Another thing beside a landmark, which is used then, too.
-    pub(super) fn beside(&mut self, landmark: &Landmark, frame: usize, to: Use) -> Option<String> {
-        let memory = self.brief.memory;
-        let is_landmark = |seen: &&Remembered| seen.name == landmark.name && self.fits(seen, frame, to);
-        let place = memory.seen_from(frame).filter(is_landmark).find_map(|seen| seen.position)?;
-        let beside = memory.seen_from(frame).filter(|seen| {
+    /// Another thing of the same spot that lies beside a thing.
+    fn beside<'b>(
+        &self,
+        landmark: &Remembered,
+        search: Search,
+        others: impl Iterator<Item = &'b At<'b>>,
+    ) -> Option<String> {
+        let (memory, here) = (self.brief.memory, search.beside());
+        let place = landmark.position?;
+        let beside = others.map(|other| other.seen).filter(|seen| {
             let is_beside = seen.position.is_some_and(|other| other.distance(place) <= BESIDE_M);
             let is_other = !agree(&seen.name, &landmark.name) && seen.colour.is_none();
-            is_beside
-                && is_other
-                && is_tellable(&seen.name, 1)
-                && self.is_free(&seen.name)
-                && self.fits(seen, frame, to)
+            is_beside && is_other && self.fits(seen, here.frame, here.to)
         });
-        let best = beside.max_by(|a, b| self.score(a, frame).total_cmp(&self.score(b, frame)))?;
-        let alike = memory.seen_from(frame).filter(|other| normal(&other.name) == normal(&best.name)).count();
-        self.used.push(normal(&best.name));
+        let best = beside.max_by(|a, b| self.score(a, here.frame).total_cmp(&self.score(b, here.frame)))?;
+        let alike = memory.seen_from(here.frame).filter(|other| normal(&other.name) == normal(&best.name)).count();
         Some(if alike > 1 { plural(&best.name) } else { best.name.clone() })
-    }
-
-    /// Keeps a landmark's name from being used again.
-    pub(super) fn take(&mut self, landmark: Landmark) -> Landmark {
-        self.used.push(normal(&landmark.name));
-        landmark
     }
 
     fn fits(&self, seen: &Remembered, frame: usize, to: Use) -> bool {

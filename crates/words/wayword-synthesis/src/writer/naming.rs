@@ -4,7 +4,7 @@ use super::{
     Brief,
     dice::Dice,
     phrases::{draw, fill, stay_phrase},
-    route::{Clause, side_word, stands_still, suits},
+    route::{Clause, Role, side_word, stands_still, suits},
 };
 use crate::style::way::{Kind, Way, is_until};
 use rand::Rng;
@@ -73,7 +73,12 @@ impl<'a> Names<'a> {
             return Phrase { text: stay_phrase(None, rng), is_clause: true };
         }
         let motion = brief.walk.path.motion;
-        let follows = at.checked_sub(1).is_some_and(|before| told[before].kind.goes_on());
+        let before = at.checked_sub(1).map(|before| told[before].kind).filter(|_| !clause.follows_offer);
+        // A thing says how far one goes where nothing else was said of that, so that a text without it is whole.
+        let follows = match clause.thing {
+            Some(_) => before == Some(Kind::Straight),
+            None => before.is_some_and(Kind::goes_on),
+        };
         let needs = Needs {
             motion,
             names_room: has_to_name(told, at, brief),
@@ -199,16 +204,34 @@ pub(super) struct Lengths<'a> {
 
 /// Words that join a clause to the one before, in the mean.
 const JOINT_WORDS: f64 = 0.6;
+/// Words for a second thing, where half of the places that may tell one do, and for a side.
+const PAIR_WORDS: f64 = 1.0;
+const SIDE_WORDS: f64 = 2.0;
+/// The share of places for things that have one. What is seen must not change it, so it is a fixed number.
+const WITH_A_THING: f64 = 0.6;
 
 impl<'a> Lengths<'a> {
     pub(super) fn of(way: &'a Way) -> Self {
         Self { way, known: BTreeMap::new() }
     }
 
-    pub(super) fn sum(&mut self, clauses: &[Clause]) -> f64 {
-        let pairs = clauses.iter().filter(|clause| clause.thing.as_ref().is_some_and(|thing| thing.with.is_some()));
-        let more = JOINT_WORDS * clauses.len().saturating_sub(1) as f64 + 2.0 * pairs.count() as f64;
-        clauses.iter().map(|clause| self.words(clause.kind)).sum::<f64>() + more
+    /// The words of a plan, of whose places for things a usual share has one.
+    pub(super) fn sum(&mut self, plan: &[Clause]) -> f64 {
+        plan.iter().map(|clause| self.expected(clause)).sum::<f64>() - JOINT_WORDS
+    }
+
+    fn expected(&mut self, clause: &Clause) -> f64 {
+        let own = self.words(clause.kind) + JOINT_WORDS;
+        let Some(offer) = &clause.offer else { return own };
+        let (with, without) = match offer.role {
+            Role::Turn => (self.words(Kind::TurnAt) + JOINT_WORDS, own),
+            Role::PassEnter => (self.words(Kind::PassEnter) + JOINT_WORDS, own),
+            Role::EnterWith => (self.words(Kind::EnterWith) + JOINT_WORDS, own),
+            Role::Stop(kind) => (self.words(kind) + JOINT_WORDS, own),
+            Role::Onward => (own + if offer.tells_side { SIDE_WORDS } else { 0.0 }, 0.0),
+        };
+        let pair = if offer.pair { PAIR_WORDS } else { 0.0 };
+        without + WITH_A_THING * (with + pair - without)
     }
 
     fn words(&mut self, kind: Kind) -> f64 {

@@ -135,7 +135,7 @@ fn bare(brief: &Brief<'_>, asks: bool, dice: Dice) -> Result<String, WriteError>
             let names_level = goal.names_level(rng);
             format!("{} {}", goal.opener(rng), goal.phrase(&[], names_level, rng))
         }
-        None => without_room(brief, &mut landmarks, rng),
+        None => without_room(brief, &landmarks, rng),
     };
     let phrases: Vec<String> = [goal].into_iter().chain(task.map(|(task, _)| task)).collect();
     let count = sentence_target(brief, rng);
@@ -147,7 +147,7 @@ fn bare(brief: &Brief<'_>, asks: bool, dice: Dice) -> Result<String, WriteError>
 }
 
 /// The way to an end whose room has no name.
-fn without_room(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, rng: &mut ChaCha8Rng) -> String {
+fn without_room(brief: &Brief<'_>, landmarks: &Landmarks<'_>, rng: &mut ChaCha8Rng) -> String {
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
     match last_climb(walk) {

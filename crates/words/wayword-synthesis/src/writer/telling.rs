@@ -6,7 +6,7 @@ use super::{
     draft::Draft,
     landmarks::Landmarks,
     naming::Lengths,
-    route::{self, Clause, KEPT, fill, stands_still, usable_room},
+    route::{self, Clause, KEPT, carry_out, fill, stands_still, usable_room, with_stand_ins},
     task,
 };
 use crate::style::way::Kind;
@@ -18,17 +18,14 @@ use wayword_language::text::word_count;
 
 /// A text may be longer or shorter than its style's by this, words.
 const SLACK: f64 = 2.0;
-/// A way is planned so often until a text copies nothing from the style's references and has its length.
+/// A way is planned so often until a text copies nothing from the style's references.
 const PLANS: usize = 8;
 /// And words that are copied are replaced so often.
 const WORDINGS: usize = 24;
-/// A text is no more words off its length than this.
-const OFF: usize = 6;
-/// What a copy is worth less, in words off the length, and what a text that shares eight words with a reference.
-const COPIED: usize = 300;
-const SHARED: usize = 100;
-/// And what a text that is too long.
-const OVER: usize = 1000;
+/// What a copy counts against a text, what a run of words that it shares with a reference, and what it counts to be too long.
+const COPIED: usize = 3;
+const SHARED: usize = 1;
+const OVER: usize = 10;
 /// No text is cut shorter than this, words.
 const LEAST_WORDS: usize = 8;
 /// Clauses of less weight than this are left out of a text that is longer than its style's.
@@ -41,31 +38,31 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, dice: 
     let rooms: Vec<String> = brief.memory.room(end).map(str::to_owned).into_iter().collect();
     let matter = Matter { target: task.map(|(_, name)| name.as_str()), rooms: &rooms };
     let copies = &brief.profile.copies;
+    let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
     let mut best: Option<(usize, String)> = None;
     for number in 0..PLANS {
         let dice = dice.other(number);
-        let plan = Plan::of(brief, task, words, dice);
-        let mut draft = plan.worded(brief, task, dice);
-        for wording in 0..WORDINGS {
+        let mut draft = Plan::of(brief, words, dice).worded(brief, task, dice);
+        for _ in 0..WORDINGS {
             let (text, starts) = draft.text();
             let (copied, shared) = (copies.copied(&text, matter), copies.much(&text));
-            let cost = if copied.is_some() { COPIED } else { 0 } + if shared.is_some() { SHARED } else { 0 };
-            let is_over = word_count(&text) >= brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
-            let worth = word_count(&text).abs_diff(words) + cost + if is_over { OVER } else { 0 };
-            if best.as_ref().is_none_or(|(least, _)| worth < *least) {
-                best = Some((worth, text));
+            let is_over = word_count(&text) >= limit;
+            let cost = [(copied.is_some(), COPIED), (shared.is_some(), SHARED), (is_over, OVER)];
+            let cost = cost.iter().filter(|(is_so, _)| *is_so).map(|(_, cost)| cost).sum();
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, text));
             }
             let Some(span) = copied.or(shared) else { break };
-            draft.reword(span, &starts, brief, dice.other(wording));
+            draft.reword(span, &starts, brief, dice);
         }
-        if best.as_ref().is_some_and(|(worth, _)| *worth <= OFF) {
+        if best.as_ref().is_some_and(|(cost, _)| *cost == 0) {
             break;
         }
     }
     best.map(|(_, text)| text).unwrap_or_default()
 }
 
-/// What a text says, clause by clause.
+/// What a text says, clause by clause. It goes by the way alone: things come in where the plan has a place for them.
 struct Plan {
     clauses: Vec<Clause>,
     full_stop: bool,
@@ -73,18 +70,16 @@ struct Plan {
 
 impl Plan {
     /// One of about so many words.
-    fn of(brief: &Brief<'_>, task: Option<&(String, String)>, words: usize, dice: Dice) -> Self {
-        let mut landmarks = Landmarks::new(brief, dice);
-        if let Some((_, name)) = task {
-            landmarks.reserve(name);
+    fn of(brief: &Brief<'_>, words: usize, dice: Dice) -> Self {
+        let mut clauses = route::clauses(brief, dice);
+        if !stands_still(brief.walk) {
+            fill::offer_places(&mut clauses, brief, dice);
         }
-        let mut clauses = route::clauses(brief, &mut landmarks, dice);
-        fill::name_a_thing(&mut clauses, brief, &mut landmarks, dice);
         let mut lengths = Lengths::of(&brief.profile.way);
         while lengths.sum(&clauses) > words as f64 + SLACK && drop_least(&mut clauses, OPTIONAL) {}
         let mut times = 0;
         while lengths.sum(&clauses) < words as f64 - SLACK && !stands_still(brief.walk) {
-            if !fill::fill(&mut clauses, brief, &mut landmarks, dice.other(times)) {
+            if !fill::fill(&mut clauses, brief, dice.other(times)) {
                 break;
             }
             times += 1;
@@ -93,12 +88,17 @@ impl Plan {
     }
 
     fn worded<'a>(&self, brief: &'a Brief<'_>, task: Option<&(String, String)>, dice: Dice) -> Draft<'a> {
+        let mut landmarks = Landmarks::new(brief, dice);
+        if let Some((_, name)) = task {
+            landmarks.reserve(name);
+        }
         let mut clauses = self.clauses.clone();
         let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
         let task = task.map(|(task, _)| task.as_str());
         loop {
-            let mut told = clauses.clone();
-            mend(&mut told, brief);
+            let mut plan = clauses.clone();
+            mend(&mut plan, brief);
+            let told = carry_out(&with_stand_ins(plan, brief.memory), brief, &landmarks, dice);
             let draft = Draft::of(told, task, self.full_stop, brief, dice);
             if word_count(&draft.text().0) < limit || !drop_least(&mut clauses, KEPT) {
                 return draft;
@@ -146,9 +146,25 @@ fn mend(clauses: &mut Vec<Clause>, brief: &Brief<'_>) {
         }
     }
     while let Some(at) = (1..clauses.len()).find(|at| clauses[*at].is_bare() && clauses[*at - 1].is_bare()) {
-        let mut onward = clauses[at].clone();
-        onward.kind = Kind::Straight;
+        let onward = clauses[at].straight_on();
         clauses.insert(at, onward);
+    }
+    bridge(clauses);
+}
+
+/// Of two turns in a row between which things may be told, the text says that one goes on where there are none.
+fn bridge(clauses: &mut [Clause]) {
+    let mut bare: Option<usize> = None;
+    for at in 0..clauses.len() {
+        if clauses[at].is_offer() {
+            continue;
+        }
+        if let Some(before) = bare.filter(|_| clauses[at].is_bare()) {
+            if let Some(between) = clauses[before + 1..at].first_mut() {
+                between.or_straight_on();
+            }
+        }
+        bare = clauses[at].is_bare().then_some(at);
     }
 }
 

@@ -1,19 +1,15 @@
-//! More to say of a way that is told in fewer words than the texts of its style.
+//! More to say of a way that is told in fewer words than the texts of its style. It goes by the way alone, too.
 
-use super::{Clause, FILLER, MAIN, SIDE, STOPPED_AT, WALKED_PAST, onward::past, usable_room};
+use super::{
+    Clause, FILLER, Offer, Role, SIDE,
+    offer::{Things, free_hops, insert},
+    usable_room,
+};
 use crate::{
     style::way::Kind,
-    writer::{
-        Brief,
-        dice::Dice,
-        landmarks::{Landmark, Landmarks, Use},
-        phrases::draw,
-    },
+    writer::{Brief, dice::Dice, phrases::draw},
 };
-use rand::{
-    Rng,
-    seq::{IndexedRandom, SliceRandom},
-};
+use rand::{Rng, seq::IndexedRandom};
 use rand_chacha::ChaCha8Rng;
 use wayword_language::lexicon::room_name;
 
@@ -51,18 +47,15 @@ const ALL: [(f64, More); 8] = [
 
 /// How often a thing that is hardly a landmark fills a text.
 const LESS_SALIENT: f64 = 0.25;
+/// A text has at least so many places before its end for things.
+const LEAST_OFFERS: usize = 2;
 
 /// Says one thing more; `false` where nothing more is known.
-pub(in crate::writer) fn fill(
-    clauses: &mut Vec<Clause>,
-    brief: &Brief<'_>,
-    landmarks: &mut Landmarks<'_>,
-    dice: Dice,
-) -> bool {
+pub(in crate::writer) fn fill(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice: Dice) -> bool {
     let mut left = ALL.to_vec();
     let mut rng = dice.by(&["more"]);
     while let Some(more) = draw(&left, &mut rng) {
-        let mut filler = Filler { clauses, brief, landmarks, rng: dice.by(&["more of", &format!("{more:?}")]) };
+        let mut filler = Filler { clauses, brief, rng: dice.by(&["more of", &format!("{more:?}")]) };
         let is_told = match more {
             More::Landmark => filler.landmark(),
             More::Side => filler.side(),
@@ -81,102 +74,58 @@ pub(in crate::writer) fn fill(
     false
 }
 
-/// Says a thing that one passes in a text that names none on the way.
-pub(in crate::writer) fn name_a_thing(
-    clauses: &mut Vec<Clause>,
-    brief: &Brief<'_>,
-    landmarks: &mut Landmarks<'_>,
-    dice: Dice,
-) {
-    if names_none(clauses) {
-        Filler { clauses, brief, landmarks, rng: dice.by(&["one thing"]) }.landmark();
+/// Has a text offer places for things on the way, where almost anything will do.
+pub(in crate::writer) fn offer_places(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice: Dice) {
+    let offers = |clauses: &[Clause]| clauses.iter().rev().skip(1).filter(|clause| clause.offer.is_some()).count();
+    let mut times = 0;
+    while offers(clauses) < LEAST_OFFERS {
+        if !(Filler { clauses, brief, rng: dice.other(times).by(&["one thing"]) }).landmark() {
+            break;
+        }
+        times += 1;
+    }
+    for offer in clauses.iter_mut().filter_map(|clause| clause.offer.as_mut()) {
+        offer.things = Things::Any;
     }
 }
 
-/// Whether a text names no thing before its last clause.
-fn names_none(clauses: &[Clause]) -> bool {
-    clauses.iter().rev().skip(1).all(|clause| clause.thing.is_none())
-}
-
-struct Filler<'a, 'b> {
+struct Filler<'a> {
     clauses: &'a mut Vec<Clause>,
     brief: &'a Brief<'a>,
-    landmarks: &'a mut Landmarks<'b>,
     rng: ChaCha8Rng,
 }
 
-impl Filler<'_, '_> {
+impl Filler<'_> {
     /// Puts a clause before the first one that is said at its frame or later.
     fn insert(&mut self, clause: Clause) {
         let at = self.clauses.iter().position(|other| other.at >= clause.at).unwrap_or(self.clauses.len());
         self.clauses.insert(at, clause);
     }
 
-    /// Frames between the ends that lie on no stairs, in any order.
-    fn frames(&mut self) -> Vec<usize> {
-        let memory = self.brief.memory;
-        let on_stairs = |frame: &usize| memory.flights.iter().any(|flight| flight.from < *frame && *frame < flight.to);
-        let mut frames: Vec<usize> = (1..memory.frames().saturating_sub(1)).filter(|frame| !on_stairs(frame)).collect();
-        frames.shuffle(&mut self.rng);
-        frames
-    }
-
+    /// A place for a thing between the ends.
     fn landmark(&mut self) -> bool {
-        for frame in self.frames() {
-            if self.clauses.iter().any(|clause| clause.at == frame && clause.thing.is_some()) {
-                continue;
-            }
-            let Some(thing) = self.thing_at(frame) else { continue };
-            let way = &self.brief.profile.way;
-            let side = thing.passed.filter(|(passed, _)| *passed <= frame && *passed + 2 > frame).map(|(_, side)| side);
-            let kind = past(way, self.clauses, side, thing.side, &mut self.rng);
-            let is_only = names_none(self.clauses);
-            let mut clause = Clause::new(kind, frame, if is_only { MAIN } else { SIDE }).by(thing);
-            clause.side = side.filter(|_| kind == Kind::PassOnSide);
-            self.insert(clause);
-            return true;
-        }
-        false
-    }
-
-    fn thing_at(&mut self, frame: usize) -> Option<Landmark> {
-        let is_only = names_none(self.clauses);
+        let Some(hop) = free_hops(self.clauses, self.brief.memory).choose(&mut self.rng).copied() else { return false };
         let is_faint = self.rng.random_bool(LESS_SALIENT);
-        let tries = [
-            (true, WALKED_PAST, Use::Onward),
-            (is_faint || is_only, STOPPED_AT, Use::Onward),
-            (is_only, STOPPED_AT, Use::Beside),
-        ];
-        let tries = tries.into_iter().filter(|(may, ..)| *may);
-        tries.into_iter().find_map(|(_, salience, to)| self.landmarks.find(frame, salience, to))
-    }
-
-    fn side(&mut self) -> bool {
-        let passed = self.clauses.iter_mut().find_map(|clause| {
-            let thing = clause.thing.as_ref().filter(|thing| thing.with.is_none() && clause.kind == Kind::Pass)?;
-            let (frame, side) = thing.passed?;
-            (clause.at..=clause.at + 1).contains(&frame).then_some((clause, side))
-        });
-        let Some((clause, side)) = passed else { return false };
-        (clause.kind, clause.side) = (Kind::PassOnSide, Some(side));
+        let things = if is_faint { Things::Faint } else { Things::Fair };
+        insert(self.clauses, hop, Offer::new(Role::Onward, hop + 1).taking(things));
         true
     }
 
+    /// The offers on the way that may say more.
+    fn offers(&mut self, says_less: impl Fn(&Offer) -> bool) -> Option<&mut Offer> {
+        let mut offers = self.clauses.iter_mut().rev().filter_map(|clause| clause.offer.as_mut());
+        offers.find(|offer| says_less(offer))
+    }
+
+    fn side(&mut self) -> bool {
+        let offer = self.offers(|offer| offer.role == Role::Onward && !offer.tells_side && !offer.pair);
+        offer.map(|offer| offer.tells_side = true).is_some()
+    }
+
     fn pair(&mut self) -> bool {
-        for clause in self.clauses.iter_mut().rev() {
-            let to = match clause.kind {
-                Kind::StopAt | Kind::StopAtIn => Use::Stop,
-                Kind::Pass | Kind::TurnAt => Use::Here,
-                _ => continue,
-            };
-            if let Some(thing) = clause.thing.as_mut().filter(|thing| thing.with.is_none()) {
-                thing.with = self.landmarks.beside(thing, clause.at, to);
-                if thing.with.is_some() {
-                    return true;
-                }
-            }
-        }
-        false
+        let may = |role: Role| matches!(role, Role::Stop(_) | Role::Onward | Role::Turn);
+        let offer = self.offers(|offer| may(offer.role) && !offer.pair && !offer.tells_side);
+        offer.map(|offer| offer.pair = true).is_some()
     }
 
     /// A room on the way that no clause names.
@@ -202,13 +151,13 @@ impl Filler<'_, '_> {
     fn door(&mut self) -> bool {
         let doors = self.brief.memory.openings.iter().filter(|opening| opening.has_door);
         for opening in doors {
-            let told = self.clauses.iter().position(|clause| clause.at == opening.before);
+            let told = self.clauses.iter().position(|clause| clause.at == opening.before && !clause.is_offer());
             let Some(at) = told else {
                 self.insert(Clause::new(Kind::ThroughDoor, opening.before, SIDE));
                 return true;
             };
             let kind = match self.clauses[at].kind {
-                Kind::Enter if self.rng.random_bool(0.5) => {
+                Kind::Enter if self.clauses[at].offer.is_some() || self.rng.random_bool(0.5) => {
                     self.clauses.insert(at, Clause::new(Kind::ThroughDoor, opening.before, SIDE));
                     return true;
                 }
@@ -227,10 +176,9 @@ impl Filler<'_, '_> {
         for at in 0..self.clauses.len() {
             let clause = &self.clauses[at];
             let opening = self.brief.memory.openings.iter().find(|opening| opening.before == clause.at);
-            let Some(opening) = opening.filter(|_| clause.kind == Kind::Enter) else { continue };
-            if let Some(thing) = self.landmarks.find(opening.behind, WALKED_PAST, Use::Here) {
-                self.clauses[at].kind = Kind::EnterWith;
-                self.clauses[at].thing = Some(thing);
+            let is_free = clause.kind == Kind::Enter && clause.offer.is_none();
+            if let Some(opening) = opening.filter(|_| is_free) {
+                self.clauses[at].offer = Some(Offer::new(Role::EnterWith, opening.behind));
                 return true;
             }
         }
@@ -239,18 +187,23 @@ impl Filler<'_, '_> {
 
     fn stop_room(&mut self) -> bool {
         let Some(stop) = self.clauses.last_mut().filter(|stop| stop.room.is_some()) else { return false };
-        stop.kind = match stop.kind {
-            Kind::StopAt => Kind::StopAtIn,
-            Kind::Stop => Kind::StopIn,
-            _ => return false,
-        };
-        true
+        let named = [(Kind::StopAt, Kind::StopAtIn), (Kind::Stop, Kind::StopIn)];
+        let with_room = |kind: Kind| named.iter().find(|(without, _)| *without == kind).map(|(_, with)| *with);
+        let mut says_more = false;
+        if let Some(kind) = with_room(stop.kind) {
+            (stop.kind, says_more) = (kind, stop.offer.is_none());
+        }
+        if let Some(Offer { role: Role::Stop(kind), .. }) = &mut stop.offer
+            && let Some(with) = with_room(*kind)
+        {
+            (*kind, says_more) = (with, true);
+        }
+        says_more
     }
 
     /// One goes on before what comes next.
     fn onward(&mut self) -> bool {
-        let goes_on =
-            |clause: &Clause| matches!(clause.kind, Kind::Straight | Kind::Pass | Kind::PassOnSide | Kind::To);
+        let goes_on = |clause: &Clause| clause.is_offer() || clause.kind == Kind::Straight;
         let is_free = |at: &usize| {
             let now = &self.clauses[*at];
             let is_after = *at == 0 || now.at > self.clauses[*at - 1].at && !goes_on(&self.clauses[*at - 1]);

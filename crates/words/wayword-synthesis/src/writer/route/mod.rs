@@ -1,20 +1,22 @@
 //! What there is to say about a path, clause by clause: each turn has its place, and rooms are entered before they are
-//! left.
+//! left. The plan of a text goes by the way alone. It has offers of places for things; which things are told there is seen
+//! when the plan is carried out, so that a thing that comes or goes changes the words of its own place only.
 
+mod carry_out;
 pub(super) mod fill;
+mod offer;
 mod onward;
 mod rooms;
 mod stop;
 mod turns;
 
-use super::{
-    Brief,
-    dice::Dice,
-    landmarks::{Landmark, Landmarks},
-};
+pub(super) use carry_out::carry_out;
+pub(super) use offer::{Offer, Role, with_stand_ins};
+
+use super::{Brief, dice::Dice, landmarks::Landmark};
 use crate::{style::way::Kind, walk::Walk};
 use rand_chacha::ChaCha8Rng;
-use wayword_checks::memory::{Flight, Memory};
+use wayword_checks::memory::{Bend, Flight, Memory};
 use wayword_core::{Climb, Motion, Side, motion};
 use wayword_language::lexicon::room_name;
 
@@ -35,6 +37,10 @@ pub(super) struct Clause {
     pub(super) from: Option<String>,
     /// How much it matters: [`KEPT`] is never left out.
     pub(super) weight: u8,
+    /// The thing that may be told with it, or for which it stands.
+    pub(super) offer: Option<Offer>,
+    /// Whether a clause for a thing may stand right before it, so that it cannot say how far that one goes.
+    pub(super) follows_offer: bool,
 }
 
 /// Weight of what is never left out.
@@ -57,16 +63,39 @@ const DOORWAY_M: f64 = 2.2;
 
 impl Clause {
     fn new(kind: Kind, at: usize, weight: u8) -> Self {
-        Self { kind, at, side: None, thing: None, room: None, from: None, weight }
+        let (side, thing, room, from) = (None, None, None, None);
+        Self { kind, at, side, thing, room, from, weight, offer: None, follows_offer: false }
+    }
+
+    /// A clause that is there for a thing alone.
+    fn for_a_thing(hop: usize, offer: Offer) -> Self {
+        Self { offer: Some(offer), ..Self::new(Kind::Pass, hop, SIDE) }
+    }
+
+    /// Whether it is there for a thing alone.
+    pub(super) fn is_offer(&self) -> bool {
+        self.offer.as_ref().is_some_and(|offer| offer.role == Role::Onward)
+    }
+
+    /// That one goes straight on before it.
+    pub(super) fn straight_on(&self) -> Self {
+        Self::new(Kind::Straight, self.at, self.weight)
+    }
+
+    /// Says that one goes straight on where it has no thing.
+    pub(super) fn or_straight_on(&mut self) {
+        if let Some(offer) = &mut self.offer {
+            offer.or_straight = true;
+        }
+    }
+
+    fn offering(mut self, offer: Offer) -> Self {
+        self.offer = Some(offer);
+        self
     }
 
     fn to(mut self, side: Side) -> Self {
         self.side = Some(side);
-        self
-    }
-
-    fn by(mut self, thing: Landmark) -> Self {
-        self.thing = Some(thing);
         self
     }
 
@@ -92,11 +121,11 @@ impl Clause {
 }
 
 /// The clauses of a path, the stop last.
-pub(super) fn clauses(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, dice: Dice) -> Vec<Clause> {
+pub(super) fn clauses(brief: &Brief<'_>, dice: Dice) -> Vec<Clause> {
     let memory = brief.memory;
     let here = memory.room(0).and_then(usable_room);
     let rng = dice.by(&["start"]);
-    let mut planner = Planner { brief, memory, landmarks, dice, rng, clauses: Vec::new(), here, along: false };
+    let mut planner = Planner { brief, memory, dice, rng, clauses: Vec::new(), here, along: false };
     if !stands_still(brief.walk) {
         planner.way();
     }
@@ -108,10 +137,9 @@ pub(super) fn clauses(brief: &Brief<'_>, landmarks: &mut Landmarks<'_>, dice: Di
     planner.clauses
 }
 
-struct Planner<'a, 'b> {
+struct Planner<'a> {
     brief: &'a Brief<'a>,
     memory: &'a Memory,
-    landmarks: &'a mut Landmarks<'b>,
     dice: Dice,
     /// What is drawn for the step that is told.
     rng: ChaCha8Rng,
@@ -122,13 +150,13 @@ struct Planner<'a, 'b> {
     along: bool,
 }
 
-impl Planner<'_, '_> {
+impl Planner<'_> {
     fn way(&mut self) {
         let last = self.memory.frames().saturating_sub(1);
         let mut at = self.leave_at_once().unwrap_or(0);
         while at < last {
             self.rng = self.dice.at("step", at);
-            let bend = self.memory.bends.iter().find(|bend| bend.first == at).copied();
+            let bend = self.bend_at(at);
             let opening = self.memory.openings.iter().find(|opening| opening.before == at);
             if let Some(flight) = self.memory.flights.iter().find(|flight| flight.from == at) {
                 if let Some(bend) = bend {
@@ -149,6 +177,17 @@ impl Planner<'_, '_> {
             }
             at += 1;
         }
+    }
+
+    /// The turn that is told at a frame. One that begins on stairs and ends behind them is told behind them.
+    fn bend_at(&self, at: usize) -> Option<Bend> {
+        let flight = self.memory.flights.iter().find(|flight| flight.to == at);
+        let begins_here = |bend: &&Bend| {
+            let on_stairs = |flight: &&Flight| (flight.from + 1..flight.to).contains(&bend.first) && bend.last >= at;
+            bend.first == at || flight.as_ref().is_some_and(on_stairs)
+        };
+        let bend = self.memory.bends.iter().find(begins_here)?;
+        Some(Bend { first: at, ..*bend })
     }
 
     fn count(&self, kind: Kind) -> f64 {

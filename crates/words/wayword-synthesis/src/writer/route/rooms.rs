@@ -1,10 +1,7 @@
 //! From one room into another.
 
-use super::{Clause, MAIN, Planner, SIDE, WALKED_PAST, turns::left_out, usable_room};
-use crate::{
-    style::way::Kind,
-    writer::{landmarks::Use, phrases::draw},
-};
+use super::{Clause, MAIN, Offer, Planner, Role, SIDE, usable_room};
+use crate::{style::way::Kind, writer::phrases::draw};
 use rand::Rng;
 use wayword_checks::memory::{Bend, Opening};
 use wayword_core::{Side, motion};
@@ -18,11 +15,15 @@ const LEFT_AT_ONCE: f64 = 0.6;
 /// One stands in a door that is no farther than this, metres.
 const IN_DOOR_M: f64 = 0.5;
 
-impl Planner<'_, '_> {
-    /// Many texts begin with leaving the room of the start, however one turns before that. The frame from which the
-    /// way goes on.
+impl Planner<'_> {
+    /// Many texts begin with leaving the room of the start, however one turns at the start. The frame from which the way goes
+    /// on.
     pub(super) fn leave_at_once(&mut self) -> Option<usize> {
         let opening = self.memory.openings.first().filter(|opening| opening.before <= LEFT_SOON)?;
+        let mut bends = self.memory.bends.iter().filter(|bend| bend.first > 0);
+        if bends.any(|bend| bend.first <= opening.before && !self.is_left_out(*bend)) {
+            return None;
+        }
         let from = usable_room(&opening.from).filter(|from| self.here.as_ref() == Some(from))?;
         let is_hall = room_name(&from) == Some("hallway");
         if is_hall || !self.rng.random_bool(LEFT_AT_ONCE) {
@@ -56,16 +57,14 @@ impl Planner<'_, '_> {
         let to = usable_room(&opening.to);
         let from = usable_room(&opening.from).filter(|from| self.here.as_ref() == Some(from));
         let mut kinds: Vec<(f64, Kind)> = Vec::new();
-        let mut near = None;
         let next = self.memory.openings.iter().find(|next| next.before >= opening.behind);
         let is_last = next.is_none();
         if to.is_some() {
             let is_hall = room_name(&opening.to) == Some("hallway");
             let share = if is_last { 1.5 } else { 0.5 } * if is_hall { 0.4 } else { 1.0 };
             kinds.push((self.count(Kind::Enter) * share, Kind::Enter));
-            if let Some(thing) = self.landmarks.peek(at, WALKED_PAST).filter(|_| at > 0) {
+            if at > 0 {
                 kinds.push((self.count(Kind::PassEnter) * 5.0, Kind::PassEnter));
-                near = Some(thing);
             }
             let is_crossed = next.is_some_and(|next| next.before <= opening.behind + 1);
             if is_crossed {
@@ -106,8 +105,8 @@ impl Planner<'_, '_> {
             Kind::ThroughDoor | Kind::ToDoor => {}
             Kind::AlongToEnd => clause = clause.room(&opening.from),
             Kind::PassEnter => {
-                clause.thing = near.map(|thing| self.landmarks.take(thing));
-                clause = clause.from(&opening.from).room(&opening.to);
+                clause = clause.from(&opening.from).room(&opening.to).offering(Offer::new(Role::PassEnter, at));
+                clause.kind = Kind::Enter;
             }
             _ => clause = clause.from(&opening.from).room(&opening.to),
         }
@@ -155,14 +154,14 @@ impl Planner<'_, '_> {
             self.push(Clause::new(Kind::TurnAround, at, MAIN));
             return self.change(opening);
         }
+        // Who leaves the room of the start needs no turn; nor does a slight one.
+        let is_implied = at == 0 && can_leave && self.rng.random_bool(0.7);
+        if is_implied || self.is_left_out(bend) {
+            return self.change(opening);
+        }
         if self.stands_in_a_door(at) {
             self.change(opening);
             return self.push(Clause::new(Kind::Turn, at, MAIN).to(side));
-        }
-        // Who leaves the room of the start needs no turn; nor does a slight one.
-        let is_implied = at == 0 && can_leave && self.rng.random_bool(0.7);
-        if is_implied || self.rng.random_bool(left_out(bend)) {
-            return self.change(opening);
         }
         let mut kinds: Vec<(f64, Kind)> = Vec::new();
         if to.is_some() {
@@ -185,10 +184,8 @@ impl Planner<'_, '_> {
                 self.enter(None);
             }
             Some(Kind::TurnAt) => {
-                match self.landmarks.find(at, WALKED_PAST, Use::Here).filter(|_| at > 0) {
-                    Some(thing) => self.push(Clause::new(Kind::TurnAt, at, MAIN).to(side).by(thing)),
-                    None => self.push(Clause::new(Kind::Turn, at, MAIN).to(side)),
-                }
+                let turn = Clause::new(Kind::Turn, at, MAIN).to(side);
+                self.push(if at > 0 { turn.offering(Offer::new(Role::Turn, at)) } else { turn });
                 self.change(opening);
             }
             Some(Kind::TurnOut) => {

@@ -1,27 +1,24 @@
 //! The end of the way.
 
-use super::{Clause, DOORWAY_M, KEPT, Planner, STOPPED_AT, WALKED_PAST, usable_room};
-use crate::{
-    style::way::Kind,
-    writer::{landmarks::Use, phrases::draw},
-};
+use super::{Clause, DOORWAY_M, KEPT, Offer, Planner, Role, usable_room};
+use crate::{style::way::Kind, writer::phrases::draw};
 use wayword_core::Climb;
-use wayword_language::lexicon::room_name;
+use wayword_language::lexicon::{agree, room_name};
 
 /// How much seldomer the last room is named twice.
 const NAMED_AGAIN: f64 = 0.1;
 
-impl Planner<'_, '_> {
+impl Planner<'_> {
     /// The end: at a thing within reach, in the room, in the doorway, or at the stairs.
     pub(super) fn stop(&mut self) {
         let end = self.memory.frames().saturating_sub(1);
         let room = self.memory.room(end).and_then(usable_room);
         let is_told = room.is_some() && self.here == room;
         let flight = self.memory.flights.last().filter(|flight| flight.to == end).map(|flight| flight.climb);
-        let thing = self.landmarks.find(end, WALKED_PAST, Use::Stop);
-        let thing = thing.or_else(|| self.landmarks.find(end, STOPPED_AT, Use::Stop));
         let last_hop_m = self.brief.walk.moves.last().map_or(f64::INFINITY, |step| step.distance_m);
-        let door = self.memory.openings.last().filter(|opening| opening.behind == end && opening.has_door);
+        // A doorway that nothing shows could not be checked.
+        let shows_doorway = self.memory.seen_from(end).any(|seen| agree(&seen.name, "doorway"));
+        let door = self.memory.openings.last().filter(|opening| opening.behind == end && shows_doorway);
         // Where the text has the walker in another room, it names the last one.
         let misleads = !is_told && self.names_another(room.as_deref());
         let mut kinds: Vec<(f64, Kind)> = Vec::new();
@@ -30,11 +27,9 @@ impl Planner<'_, '_> {
             Some(Climb::Down) => kinds.push((self.count(Kind::StopAtBottom) * 8.0, Kind::StopAtBottom)),
             _ => {}
         }
-        if thing.is_some() {
-            kinds.push((self.count(Kind::StopAt) * 2.0, Kind::StopAt));
-            if room.is_some() {
-                kinds.push((self.count(Kind::StopAtIn) * 3.0, Kind::StopAtIn));
-            }
+        kinds.push((self.count(Kind::StopAt) * 2.0, Kind::StopAt));
+        if room.is_some() {
+            kinds.push((self.count(Kind::StopAtIn) * 3.0, Kind::StopAtIn));
         }
         if door.is_some() && last_hop_m <= DOORWAY_M {
             kinds.push((self.count(Kind::StopInDoorway) * 1.5, Kind::StopInDoorway));
@@ -47,8 +42,10 @@ impl Planner<'_, '_> {
         if room.is_some() && !is_told {
             kinds.push((self.count(Kind::StopIn) * 1.5 * in_room + 1.0, Kind::StopIn));
         } else {
-            let has_place =
-                self.clauses.last().is_some_and(|before| !before.is_bare() && before.kind != Kind::Straight);
+            let has_place = self
+                .clauses
+                .last()
+                .is_some_and(|before| !before.is_bare() && before.kind != Kind::Straight && !before.is_offer());
             kinds.push((self.count(Kind::Stop) * if has_place { 0.5 } else { 0.02 }, Kind::Stop));
             if room.is_some() {
                 // Who has just told to enter it does not name it again.
@@ -59,8 +56,11 @@ impl Planner<'_, '_> {
             kinds.retain(|(_, kind)| matches!(kind, Kind::StopIn | Kind::StopAtIn | Kind::StopInDoorwayOf));
         }
         let kind = draw(&kinds, &mut self.rng).unwrap_or(Kind::Stop);
-        let mut clause = Clause::new(kind, end, KEPT);
-        clause.thing = thing.filter(|_| matches!(kind, Kind::StopAt | Kind::StopAtIn));
+        let needs_thing = |kind: Kind| matches!(kind, Kind::StopAt | Kind::StopAtIn);
+        kinds.retain(|(_, kind)| !needs_thing(*kind));
+        let without = draw(&kinds, &mut self.rng).unwrap_or(Kind::Stop);
+        let mut clause = Clause::new(if needs_thing(kind) { without } else { kind }, end, KEPT);
+        clause.offer = needs_thing(kind).then(|| Offer::new(Role::Stop(kind), end));
         clause.room = room;
         self.push(clause);
     }

@@ -1,16 +1,13 @@
 //! Turns within a room, and the turn at the start.
 
-use super::{Clause, LONG_M, MAIN, Planner, WALKED_PAST, usable_room};
-use crate::{
-    style::way::Kind,
-    writer::{landmarks::Use, phrases::draw},
-};
+use super::{Clause, LONG_M, MAIN, Offer, Planner, Role, usable_room};
+use crate::{style::way::Kind, writer::phrases::draw};
 use rand::Rng;
 use wayword_checks::memory::Bend;
-use wayword_core::{Climb, Side};
+use wayword_core::{Climb, Side, rng};
 use wayword_language::lexicon::room_name;
 
-impl Planner<'_, '_> {
+impl Planner<'_> {
     /// A turn within a room: at a landmark, at the stairs, in the room, or after what was just said.
     pub(super) fn turn(&mut self, bend: Bend) {
         let (at, side) = (bend.first, bend.side());
@@ -20,30 +17,21 @@ impl Planner<'_, '_> {
         if side == Side::Behind {
             return self.push(Clause::new(Kind::TurnAround, at, MAIN));
         }
-        let flight = self.memory.flights.iter().find(|flight| flight.to == at).map(|flight| flight.climb);
-        let thing = match self.rng.random_bool(if flight.is_some() { 0.25 } else { 0.75 }) {
-            true => self.landmarks.find(at, WALKED_PAST, Use::Here),
-            false => None,
-        };
-        if let Some(thing) = thing {
-            let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };
-            let kind = draw(&[(3.0, Kind::TurnAt), (ahead, Kind::To)], &mut self.rng).unwrap_or(Kind::TurnAt);
-            if kind == Kind::TurnAt {
-                return self.push(Clause::new(kind, at, MAIN).to(side).by(thing));
-            }
-            self.push(Clause::new(kind, at, MAIN).by(thing));
-            return self.push(Clause::new(Kind::Turn, at, MAIN).to(side));
-        }
-        if self.rng.random_bool(left_out(bend)) {
+        if self.is_left_out(bend) {
             return;
         }
-        self.go_on_to(at);
+        let flight = self.memory.flights.iter().find(|flight| flight.to == at).map(|flight| flight.climb);
+        let offers = self.rng.random_bool(if flight.is_some() { 0.25 } else { 0.75 });
+        let straight_from = self.straight_before(at);
+        if !offers {
+            self.go_on_to(at);
+        }
         let slight = bend.is_slight() && self.rng.random_bool(0.5);
         let bare = if slight { Kind::TurnSlightly } else { Kind::Turn };
-        let follows = self.clauses.last().is_some_and(|before| !before.is_bare() && before.at + 1 >= at);
+        let follows = self.follows_a_place(at);
         let room = self.memory.room(at).and_then(usable_room);
         let is_hall = room.as_deref().and_then(room_name) == Some("hallway");
-        let mut kinds = vec![(if follows { 4.0 } else { 0.3 }, bare)];
+        let mut kinds = vec![(if follows || offers { 4.0 } else { 0.3 }, bare)];
         match flight {
             Some(Climb::Up) => kinds.push((4.0, Kind::TurnAtTop)),
             Some(Climb::Down) => kinds.push((4.0, Kind::TurnAtBottom)),
@@ -57,16 +45,22 @@ impl Planner<'_, '_> {
         }
         let kind = draw(&kinds, &mut self.rng).unwrap_or(bare);
         let room = room.unwrap_or_default();
-        match kind {
+        let turn = match kind {
             Kind::Along => {
                 self.along(at.saturating_sub(1), &room, MAIN);
-                self.push(Clause::new(bare, at, MAIN).to(side));
+                Clause::new(bare, at, MAIN).to(side)
             }
-            Kind::TurnIn => {
-                self.push(Clause::new(kind, at, MAIN).to(side).room(&room));
-            }
-            kind => self.push(Clause::new(kind, at, MAIN).to(side)),
-        }
+            Kind::TurnIn => Clause::new(kind, at, MAIN).to(side).room(&room),
+            kind => Clause::new(kind, at, MAIN).to(side),
+        };
+        let offer = Offer { or_straight: straight_from && kind != Kind::Along, ..Offer::new(Role::Turn, at) };
+        self.push(if offers { turn.offering(offer) } else { turn });
+    }
+
+    /// Whether the clause before a turn says where it is: one that is no turn itself, not far before it.
+    fn follows_a_place(&self, at: usize) -> bool {
+        let before = self.clauses.iter().rfind(|before| !before.is_offer());
+        before.is_some_and(|before| !before.is_bare() && before.at + 1 >= at)
     }
 
     /// How many hops one has walked in the room of a frame before it.
@@ -74,15 +68,23 @@ impl Planner<'_, '_> {
         self.memory.stay(at).map_or(0, |stay| at - stay.entered)
     }
 
-    /// Who has walked some way in a room since the last clause is told so, before a turn or a door.
-    pub(super) fn go_on_to(&mut self, at: usize) {
-        let Some(stay) = self.memory.stay(at) else { return };
+    /// Whether one has walked some way in a room since the last clause, and from which frame.
+    fn walked_since(&self, at: usize) -> Option<(usize, &str)> {
+        let stay = self.memory.stay(at)?;
         let told = self.clauses.last().map_or(0, |before| before.at + 1);
         let from = stay.entered.max(told);
-        let room = usable_room(&stay.room);
-        if self.along || self.brief.walk.walked_m(from, at) < LONG_M {
-            return;
-        }
+        (!self.along && self.brief.walk.walked_m(from, at) >= LONG_M).then_some((from, stay.room.as_str()))
+    }
+
+    /// Whether a turn without its thing needs to be told how one gets there.
+    fn straight_before(&self, at: usize) -> bool {
+        self.walked_since(at).is_some() && !self.clauses.last().is_some_and(Clause::is_offer)
+    }
+
+    /// Who has walked some way in a room since the last clause is told so, before a turn or a door.
+    pub(super) fn go_on_to(&mut self, at: usize) {
+        let Some((from, room)) = self.walked_since(at) else { return };
+        let room = usable_room(room);
         match room.filter(|room| room_name(room) == Some("hallway")) {
             Some(hall) => self.along(from, &hall, MAIN),
             None => self.push(Clause::new(Kind::Straight, from, MAIN)),
@@ -103,22 +105,23 @@ impl Planner<'_, '_> {
         };
         if is_told {
             self.push(Clause::new(kind, 0, MAIN).to(side));
-            return;
-        }
-        let climbs = self.memory.flights.first().is_some_and(|flight| flight.from == 0);
-        if leaves_soon || climbs {
-            return;
-        }
-        if let Some(thing) = self.landmarks.find(1, WALKED_PAST, Use::Here) {
-            self.pass(0, thing);
         }
     }
-}
 
-/// How often a turn is left out: nobody tells a small one that the way asks for by itself.
-pub(super) fn left_out(bend: Bend) -> f64 {
-    if bend.turn_rad.to_degrees().abs() < HARDLY_DEG { 0.6 } else { 0.0 }
+    /// Whether a turn goes unsaid: people leave out small ones that the way asks for by itself. All candidates for a text leave
+    /// out the same ones, and on the way back the same ones as on the way there.
+    pub(super) fn is_left_out(&self, bend: Bend) -> bool {
+        if bend.turn_rad.to_degrees().abs() >= HARDLY_DEG {
+            return false;
+        }
+        let brief = self.brief;
+        let from_an_end = bend.first.min(self.memory.frames().saturating_sub(1).saturating_sub(bend.last));
+        let names = ["left out", &brief.style.name, &brief.walk.path.id, &from_an_end.to_string()];
+        rng(brief.seed, &names).random_bool(LEFT_OUT)
+    }
 }
 
 /// Smaller turns may be left out, degrees.
 const HARDLY_DEG: f64 = 40.0;
+/// And so many of them are.
+const LEFT_OUT: f64 = 0.6;
