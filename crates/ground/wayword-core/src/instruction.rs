@@ -99,6 +99,9 @@ pub struct Chosen {
     pub among: u32,
     /// How many of them passed their checks.
     pub passed: u32,
+    /// Which of them it is, from 0.
+    #[serde(default)]
+    pub number: u32,
     /// What chose.
     pub by: ChosenBy,
 }

@@ -11,15 +11,16 @@ const COST_OF_A_WORD: f64 = 0.005;
 
 /// The texts of one writer, each with its repairs; the best of them is kept.
 pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
-    let mut accepted: Vec<Instruction> = Vec::new();
+    let mut accepted: Vec<Candidate> = Vec::new();
     let mut rejected: Option<Outcome> = None;
     let mut passed = 0;
-    for candidate in 0..order.candidates.max(1) {
-        match attempts(writer, observers, order, candidate)? {
+    let all = 0..order.candidates.max(1);
+    for number in order.only.map_or(all, |only| only..only + 1) {
+        match attempts(writer, observers, order, number)? {
             Outcome::Accepted(instruction) => {
                 passed += 1;
-                if accepted.iter().all(|other| other.text != instruction.text) {
-                    accepted.push(instruction);
+                if accepted.iter().all(|other| other.instruction.text != instruction.text) {
+                    accepted.push(Candidate { number, instruction });
                 }
             }
             outcome @ Outcome::Rejected { .. } => rejected = rejected.or(Some(outcome)),
@@ -27,8 +28,8 @@ pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Orde
     }
     let (best, by) = best(accepted, order);
     Ok(match (best, rejected) {
-        (Some(mut instruction), _) => {
-            let chosen = Chosen { among: order.candidates, passed, by };
+        (Some(Candidate { number, mut instruction }), _) => {
+            let chosen = Chosen { among: order.candidates, passed, number, by };
             instruction.provenance.chosen = (order.candidates > 1).then_some(chosen);
             Outcome::Accepted(instruction)
         }
@@ -37,27 +38,33 @@ pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Orde
     })
 }
 
+/// One of several texts for a walk.
+struct Candidate {
+    /// Its number, from 0.
+    number: u32,
+    instruction: Instruction,
+}
+
 /// The text that is kept, and what chose it. A text whose checks all pass goes before one with something unverified.
-fn best(accepted: Vec<Instruction>, order: Order<'_>) -> (Option<Instruction>, ChosenBy) {
-    let verdict = accepted.iter().map(|instruction| instruction.verdict).min().unwrap_or(Verdict::Pass);
-    let mut alike = accepted.into_iter().filter(|instruction| instruction.verdict == verdict);
+fn best(accepted: Vec<Candidate>, order: Order<'_>) -> (Option<Candidate>, ChosenBy) {
+    let verdict = accepted.iter().map(|candidate| candidate.instruction.verdict).min().unwrap_or(Verdict::Pass);
+    let mut alike = accepted.into_iter().filter(|candidate| candidate.instruction.verdict == verdict);
     let Some(follower) = order.follower.filter(|_| order.candidates > 1) else {
         return (alike.next(), ChosenBy::Checks);
     };
-    let scored: Vec<(Option<f64>, Instruction)> = alike
-        .map(|instruction| {
-            (follower.leads_there(&instruction.text).map(|share| worth(share, &instruction)), instruction)
-        })
-        .collect();
+    let score = |Candidate { instruction, .. }: &Candidate| {
+        follower.leads_there(&instruction.text).map(|share| worth(share, instruction))
+    };
+    let scored: Vec<(Option<f64>, Candidate)> = alike.map(|candidate| (score(&candidate), candidate)).collect();
     let by = if scored.iter().any(|(score, _)| score.is_some()) { ChosenBy::Follower } else { ChosenBy::Checks };
-    let mut best: Option<(Option<f64>, Instruction)> = None;
-    for (score, instruction) in scored {
+    let mut best: Option<(Option<f64>, Candidate)> = None;
+    for (score, candidate) in scored {
         // Of equal ones the first stays.
         if best.as_ref().is_none_or(|(before, _)| score > *before) {
-            best = Some((score, instruction));
+            best = Some((score, candidate));
         }
     }
-    (best.map(|(_, instruction)| instruction), by)
+    (best.map(|(_, candidate)| candidate), by)
 }
 
 /// What a text is worth that leads to the end with a probability of `share`, natural logs: that, and the chance to take
@@ -121,7 +128,7 @@ mod tests {
     fn the_text_that_leads_there_most_surely_is_kept_and_the_record_says_what_chose() {
         let kept = kept(&[ON, TO_A_PIANO, TO_THE_LAMP, GOOD], Some(&LampFinder));
         assert_eq!(kept.text, TO_THE_LAMP);
-        assert_eq!(kept.provenance.chosen, Some(Chosen { among: 4, passed: 3, by: ChosenBy::Follower }));
+        assert_eq!(kept.provenance.chosen, Some(Chosen { among: 4, passed: 3, number: 2, by: ChosenBy::Follower }));
     }
 
     #[test]
@@ -130,7 +137,7 @@ mod tests {
         for follower in [None, Some(follower)] {
             let kept = kept(&[TO_A_PIANO, GOOD], follower);
             assert_eq!(kept.text, GOOD);
-            assert_eq!(kept.provenance.chosen, Some(Chosen { among: 2, passed: 1, by: ChosenBy::Checks }));
+            assert_eq!(kept.provenance.chosen, Some(Chosen { among: 2, passed: 1, number: 1, by: ChosenBy::Checks }));
         }
     }
 

@@ -34,6 +34,8 @@ pub struct Order<'a> {
     pub repairs: u32,
     /// How many texts are written, of which one is kept; at least 1.
     pub candidates: u32,
+    /// Which one of these alone is written, where that is known.
+    pub only: Option<u32>,
     /// Who follows each text that passed its checks; nobody where `None`.
     pub follower: Option<&'a dyn Follow>,
     /// Texts that the walk already has in this style: the new one has to differ from them, and is drawn anew.

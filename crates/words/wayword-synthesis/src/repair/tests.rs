@@ -77,6 +77,7 @@ pub(super) fn order<'a>(
         seed: 0,
         repairs: 8,
         candidates: 1,
+        only: None,
         follower: None,
         earlier: &[],
         pictures: &[],
