@@ -144,6 +144,7 @@ fn write(known: &Known, (style, profile): &(Style, Profile)) -> Instruction {
         seed: 7,
         repairs: 8,
         candidates: 4,
+        only: None,
         follower: None,
         earlier: &[],
         pictures: &[],
@@ -157,8 +158,8 @@ fn write(known: &Known, (style, profile): &(Style, Profile)) -> Instruction {
     }
 }
 
-fn said(instruction: &Instruction) -> Written<'_> {
-    Written { text: &instruction.text, mentions: &instruction.mentions }
+fn said<'a>(instruction: &'a Instruction, path: &Path) -> Written<'a> {
+    Written { text: &instruction.text, mentions: &instruction.mentions, last_frame: path.frames.len() - 1 }
 }
 
 /// The outcomes of each test and style.
@@ -204,7 +205,7 @@ impl Trial<'_> {
         let changed = know(&Altered::new(self.platform.clone(), alter), alter.path_after(path.clone()));
         for (at, text) in texts.iter().enumerate() {
             let other = write(&changed, &self.styles[at]);
-            self.judge(test, at, judge(said(text), said(&other)));
+            self.judge(test, at, judge(said(text, path), said(&other, path)));
         }
     }
 
@@ -228,7 +229,7 @@ impl Trial<'_> {
         let (there, back) = (know(self.platform, along(false)), know(self.platform, along(true)));
         for at in 0..self.styles.len() {
             let (there, back) = (write(&there, &self.styles[at]), write(&back, &self.styles[at]));
-            self.judge("reverse", at, reverse(said(&there), said(&back)));
+            self.judge("reverse", at, reverse(said(&there, path), said(&back, path)));
         }
     }
 
@@ -245,7 +246,7 @@ impl Trial<'_> {
         let alter = Recoloured { objects, colour: new.to_owned() };
         let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
         let other = write(&changed, &self.styles[at]);
-        self.judge("material", at, material(said(text), said(&other), colour, new));
+        self.judge("material", at, material(said(text, path), said(&other, path), colour, new));
     }
 
     fn remove(&mut self, path: &Path, base: &Known, at: usize, text: &Instruction, name: &str) {
@@ -262,7 +263,7 @@ impl Trial<'_> {
         let alter = Removed { objects };
         let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
         let other = write(&changed, &self.styles[at]);
-        self.judge("remove", at, remove(said(text), said(&other), Gone { name, seen_from: &seen_from }));
+        self.judge("remove", at, remove(said(text, path), said(&other, path), Gone { name, seen_from: &seen_from }));
     }
 
     /// Something that no home has, beside the middle of the path and beside its end.
@@ -290,7 +291,7 @@ impl Trial<'_> {
             let changed = know(&Altered::new(self.platform.clone(), alter.clone()), alter.path_after(path.clone()));
             for (at, text) in texts.iter().enumerate() {
                 let other = write(&changed, &self.styles[at]);
-                self.judge("add", at, add(said(text), said(&other), Gone { name, seen_from: &seen_from }));
+                self.judge("add", at, add(said(text, path), said(&other, path), Gone { name, seen_from: &seen_from }));
             }
         }
     }

@@ -13,6 +13,7 @@ use crate::{
     styles::Measured,
     team::Team,
 };
+use std::collections::BTreeMap;
 use wayword_checks::{Checked, Evidence, Memory, Source};
 use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Path, Platform, PlatformError, SceneId, View};
 use wayword_synthesis::{
@@ -46,6 +47,15 @@ pub struct RunPlatform<'a> {
     pub scenes: &'a KnownScenes,
 }
 
+/// The texts that are asked for.
+#[derive(Clone, Copy)]
+pub struct Ordered<'a> {
+    /// Their styles.
+    pub styles: &'a [Measured],
+    /// Which of several candidates alone is written, by the style's name.
+    pub only: &'a BTreeMap<String, u32>,
+}
+
 /// The texts of an item, before anything is kept of them.
 #[derive(Debug)]
 pub struct Written {
@@ -69,7 +79,8 @@ pub fn make(
     styles: &[Measured],
     threads: usize,
 ) -> Result<Made, Error> {
-    let Written { walk, outcomes, ahead } = write(item, settings, world, team, styles, threads)?;
+    let order = Ordered { styles, only: &BTreeMap::new() };
+    let Written { walk, outcomes, ahead } = write(item, settings, world, team, order, threads)?;
     Ok(Made { walk, outcomes, pictures: pictures::encode(&ahead)? })
 }
 
@@ -84,7 +95,7 @@ pub fn write(
     settings: &Settings,
     world: RunPlatform<'_>,
     team: &Team,
-    styles: &[Measured],
+    Ordered { styles, only }: Ordered<'_>,
     threads: usize,
 ) -> Result<Written, Error> {
     let RunPlatform { platform, data, scenes } = world;
@@ -136,6 +147,7 @@ pub fn write(
             seed: settings.seed,
             repairs: settings.repairs,
             candidates: settings.candidates,
+            only: only.get(&style.name).copied(),
             follower: (!settings.no_route).then_some(&follower),
             earlier: &[],
             pictures: &shown,

@@ -1,18 +1,24 @@
 //! The clauses of a text with the frames of which they speak.
 
 use super::Written;
-use std::ops::RangeInclusive;
-use wayword_core::MentionKind;
-use wayword_language::{reading, text::tokens};
+use std::{collections::BTreeSet, ops::RangeInclusive};
+use wayword_core::{Mention, MentionKind};
+use wayword_language::{
+    reading::{self, What},
+    text::tokens,
+};
 
 /// A part of a sentence, as the reader takes texts apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Clause {
     /// Its words in lower case, without what joins it to the clause before.
     pub(super) words: String,
-    /// The first and the last frame of which it may speak: those of its mentions, where it ends with a thing up to the next turn
-    /// or room, and, where it has no mention, those from the clause before it to the one behind it.
+    /// The first and the last frame of which it may speak: those of its mentions, of a room also the one from which one enters
+    /// it, where it ends with a thing up to the next turn or climb, and, where it has no mention, those from the clause before it
+    /// to the one behind it. One stops at the last frame.
     pub(super) frames: RangeInclusive<usize>,
+    /// Whether it ends with a thing.
+    ends_with_thing: bool,
 }
 
 impl Clause {
@@ -36,6 +42,7 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
             _ => parts.push((number, vec![&token.word], token.span)),
         }
     }
+    let stops = stops(written.text);
     let mut told: Vec<Told> = Vec::new();
     for (_, words, span) in parts {
         let own: Vec<&str> = words.into_iter().skip_while(|word| is_joint(word)).collect();
@@ -43,42 +50,131 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
             continue;
         }
         let here = || written.mentions.iter().filter(|mention| (span[0]..span[1]).contains(&mention.span[0]));
-        let frames: Vec<usize> = here().map(|mention| mention.frame).collect();
-        let range = frames.iter().min().zip(frames.iter().max()).map(|(first, last)| (*first, *last));
-        let is_thing = here().next_back().is_some_and(|mention| mention.kind == MentionKind::Landmark);
-        told.push(Told { words: own.join(" "), range, is_thing });
+        let last = here().next_back().map(|mention| mention.kind);
+        let first_of = |mention: &Mention| match mention.kind {
+            MentionKind::Room => mention.frame.saturating_sub(1),
+            _ => mention.frame,
+        };
+        let range = here().map(first_of).min().zip(here().map(|mention| mention.frame).max());
+        let tells_stop = stops.iter().any(|stop| (span[0]..span[1]).contains(stop));
+        told.push(match tells_stop {
+            true => Told {
+                words: own.join(" "),
+                range: Some((written.last_frame, written.last_frame)),
+                speaks_of: Matter::Motion,
+            },
+            false => Told { words: own.join(" "), range, speaks_of: Matter::of(last) },
+        });
     }
     (0..told.len())
         .map(|at| {
             let before = told[..at].iter().rev().find_map(|told| told.range).map_or(0, |(_, last)| last);
             let behind = told[at + 1..].iter().find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
-            let mut later = told[at + 1..].iter().filter(|told| !told.is_thing);
+            let mut later = told[at + 1..].iter().filter(|told| told.speaks_of == Matter::Motion);
             let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
             let (first, last) = match told[at].range {
                 // A thing is mapped to the first frame that shows it, and may be reached only later.
-                Some((first, last)) if told[at].is_thing => (first, last.max(fixed)),
+                Some((first, last)) if told[at].speaks_of == Matter::Thing => (first, last.max(fixed)),
                 Some(range) => range,
                 None => (before.min(behind), before.max(behind)),
             };
-            Clause { words: told[at].words.clone(), frames: first..=last }
+            let ends_with_thing = told[at].speaks_of == Matter::Thing;
+            Clause { words: told[at].words.clone(), frames: first..=last, ends_with_thing }
         })
         .collect()
 }
 
-/// A clause in the making: its words, the first and last frame of its mentions, and whether the last of these is a thing.
+/// Where a text tells to stop, in bytes.
+fn stops(text: &str) -> Vec<usize> {
+    let events = reading::read(text, &BTreeSet::new()).events;
+    events.into_iter().filter(|event| event.what == What::Stop).map(|event| event.span[0]).collect()
+}
+
+/// A clause in the making: its words, the first and last frame of its mentions, and what the last of these is.
 struct Told {
     words: String,
     range: Option<(usize, usize)>,
-    is_thing: bool,
+    speaks_of: Matter,
+}
+
+/// What a clause ends with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Matter {
+    Thing,
+    /// A turn, a climb or a stop, whose frame is known.
+    Motion,
+    Other,
+}
+
+impl Matter {
+    fn of(last: Option<MentionKind>) -> Self {
+        match last {
+            Some(MentionKind::Landmark) => Self::Thing,
+            Some(MentionKind::Turn | MentionKind::Floor) => Self::Motion,
+            _ => Self::Other,
+        }
+    }
 }
 
 fn is_joint(word: &str) -> bool {
     matches!(word, "and" | "then") || !word.starts_with(char::is_alphanumeric)
 }
 
-/// The first of the clauses that speak of none of these frames and that the other text does not have, in order.
-pub(super) fn lost(of: &[Clause], in_other: &[Clause], may_change: &[usize]) -> Option<String> {
-    let mut rest = in_other.iter();
-    let kept = of.iter().filter(|clause| !clause.speaks_of(may_change));
-    kept.into_iter().find(|clause| !rest.any(|other| other.words == clause.words)).map(|clause| clause.words.clone())
+/// A clause that may not differ, and does.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Astray {
+    /// It is gone.
+    Lost(String),
+    /// It is new.
+    New(String),
+}
+
+/// The first clause that differs though only those that speak of some frames may.
+pub(super) fn astray(before: &[Clause], after: &[Clause], may_change: &[usize]) -> Option<Astray> {
+    let kept = in_both(before, after, may_change);
+    let ends = [(before.len(), after.len())];
+    let (mut from, mut to) = (0, 0);
+    for (next_from, next_to) in kept.into_iter().chain(ends) {
+        let (gone, new) = (&before[from..next_from], &after[to..next_to]);
+        let may = |clause: &&Clause| clause.speaks_of(may_change);
+        let is_swap = gone.len() == new.len();
+        // A turn or a place may be told with a thing in the one text and without it in the other.
+        let stands_for_one = |clause: &&Clause, others: &[Clause]| {
+            is_swap && !clause.ends_with_thing && others.iter().all(|other| may(&other))
+        };
+        if let Some(lost) = gone.iter().find(|clause| !may(clause) && !stands_for_one(clause, new)) {
+            return Some(Astray::Lost(lost.words.clone()));
+        }
+        if let Some(come) = new.iter().find(|clause| !may(clause) && !stands_for_one(clause, gone)) {
+            return Some(Astray::New(come.words.clone()));
+        }
+        (from, to) = (next_from + 1, next_to + 1);
+    }
+    None
+}
+
+/// The clauses that both texts have, in order: as many as there can be, those first that may not change.
+fn in_both(before: &[Clause], after: &[Clause], may_change: &[usize]) -> Vec<(usize, usize)> {
+    let worth = |clause: &Clause| if clause.speaks_of(may_change) { 1 } else { before.len() + 1 };
+    // `best[i][j]` is what the clauses from `i` and `j` on can have in common.
+    let mut best = vec![vec![0; after.len() + 1]; before.len() + 1];
+    for i in (0..before.len()).rev() {
+        for j in (0..after.len()).rev() {
+            let skipped = best[i + 1][j].max(best[i][j + 1]);
+            let is_same = before[i].words == after[j].words;
+            best[i][j] = skipped.max(if is_same { best[i + 1][j + 1] + worth(&before[i]) } else { 0 });
+        }
+    }
+    let (mut pairs, mut i, mut j) = (Vec::new(), 0, 0);
+    while i < before.len() && j < after.len() {
+        if before[i].words == after[j].words && best[i][j] == best[i + 1][j + 1] + worth(&before[i]) {
+            pairs.push((i, j));
+            (i, j) = (i + 1, j + 1);
+        } else if best[i + 1][j] >= best[i][j + 1] {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+    pairs
 }

@@ -19,6 +19,8 @@ pub struct Written<'a> {
     pub text: &'a str,
     /// What its words speak of, with the frame that has the evidence.
     pub mentions: &'a [Mention],
+    /// The last frame of its path.
+    pub last_frame: usize,
 }
 
 /// Whether an expectation holds.

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     fn of(text: &str) -> Written<'_> {
-        Written { text, mentions: &[] }
+        Written { text, mentions: &[], last_frame: 0 }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{
     Outcome, Written,
-    clauses::{clauses, lost},
+    clauses::{Astray, astray, clauses},
 };
 use wayword_core::MentionKind;
 use wayword_language::{
@@ -44,13 +44,13 @@ pub fn add(base: Written<'_>, changed: Written<'_>, come: Gone<'_>) -> Outcome {
 
 /// What differs in clauses that speak of no frame that sees the thing.
 fn local(base: Written<'_>, changed: Written<'_>, thing: Gone<'_>) -> Option<String> {
-    let (before, after) = (clauses(base), clauses(changed));
-    let whole = || format!("\"{}\" became \"{}\"", base.text, changed.text);
-    if let Some(lost) = lost(&before, &after, thing.seen_from) {
-        return Some(format!("\"{lost}\" speaks of no frame that sees the {}, and is gone: {}", thing.name, whole()));
-    }
-    let new = lost(&after, &before, thing.seen_from)?;
-    Some(format!("\"{new}\" speaks of no frame that sees the {}, and is new: {}", thing.name, whole()))
+    let (words, how) = match astray(&clauses(base), &clauses(changed), thing.seen_from)? {
+        Astray::Lost(words) => (words, "gone"),
+        Astray::New(words) => (words, "new"),
+    };
+    let name = thing.name;
+    let whole = format!("\"{}\" became \"{}\"", base.text, changed.text);
+    Some(format!("\"{words}\" speaks of no frame that sees the {name}, and is {how}: {whole}"))
 }
 
 /// Whether a text names a thing as one that is seen.
@@ -118,7 +118,10 @@ mod tests {
 
     fn judged(text: &str, told: &[(&str, MentionKind, usize)], name: &str, seen_from: &[usize]) -> Outcome {
         let (before, after) = (mentions(BASE, &TOLD), mentions(text, told));
-        let (base, changed) = (Written { text: BASE, mentions: &before }, Written { text, mentions: &after });
+        let (base, changed) = (
+            Written { text: BASE, mentions: &before, last_frame: 8 },
+            Written { text, mentions: &after, last_frame: 8 },
+        );
         remove(base, changed, Gone { name, seen_from })
     }
 
@@ -151,7 +154,10 @@ mod tests {
         let text = "Leave the bedroom. Go past the piano and turn left, then stop by the lamp.";
         let told = [("bedroom", Room, 0), ("piano", Landmark, 2), ("turn left", Turn, 4), ("lamp", Landmark, 6)];
         let (before, after) = (mentions(BASE, &TOLD), mentions(text, &told));
-        let (base, changed) = (Written { text: BASE, mentions: &before }, Written { text, mentions: &after });
+        let (base, changed) = (
+            Written { text: BASE, mentions: &before, last_frame: 8 },
+            Written { text, mentions: &after, last_frame: 8 },
+        );
         assert_eq!(add(base, changed, Gone { name: "piano", seen_from: &[2, 3] }), Outcome::Holds);
         assert_eq!(add(base, base, Gone { name: "piano", seen_from: &[2, 3] }), Outcome::NotTold);
         assert!(matches!(add(base, changed, Gone { name: "piano", seen_from: &[6] }), Outcome::Differs(_)));
@@ -159,7 +165,7 @@ mod tests {
 
     #[test]
     fn of_a_material_only_the_word_changes() {
-        let of = |text: &'static str| Written { text, mentions: &[] };
+        let of = |text: &'static str| Written { text, mentions: &[], last_frame: 0 };
         let base = of("Pass a red sofa and stop.");
         assert_eq!(material(base, of("Pass an orange sofa and stop."), "red", "orange"), Outcome::Holds);
         let dark = of("Pass the dark red sofa.");

@@ -2,17 +2,17 @@
 
 use super::{Outcome, Written};
 use std::collections::BTreeSet;
-use wayword_core::{Climb, Side};
+use wayword_core::{Climb, Mention, Side};
 use wayword_language::{
-    lexicon::room_name,
-    reading::{What, read},
+    lexicon::{Class, is_room, room_name, thing},
+    reading::{Place, What, read},
 };
 
 /// Back along the path one turns as often, to the other sides in reverse order; rooms and floors that both texts tell once come
 /// in reverse order; and up is down.
 #[must_use]
 pub fn reverse(base: Written<'_>, changed: Written<'_>) -> Outcome {
-    let (there, back) = (Told::of(base.text), Told::of(changed.text));
+    let (there, back) = (Told::of(base), Told::of(changed));
     if there == Told::default() && back == Told::default() {
         return Outcome::NotTold;
     }
@@ -25,9 +25,16 @@ pub fn reverse(base: Written<'_>, changed: Written<'_>) -> Outcome {
     if climbs != back.climbs {
         return Outcome::Differs(format!("there one climbs {:?}, and back {:?}: {whole}", there.climbs, back.climbs));
     }
-    let (rooms, floors) = (both(&there.rooms, &back.rooms), both(&there.floors, &back.floors));
-    for [there, back] in [rooms, floors] {
-        if !there.iter().eq(back.iter().rev()) {
+    let rooms = rooms_of_both(&there.rooms, &back.rooms, base.last_frame);
+    let is_known = |one: &String, other: &String| {
+        let is_apart = |rooms: &[Room]| apart(rooms, one, other).unwrap_or(true);
+        is_apart(&there.rooms) && is_apart(&back.rooms)
+    };
+    for [there, back] in [rooms, both(&there.floors, &back.floors)] {
+        let place = |name: &String| back.iter().position(|other| other == name);
+        let mut pairs =
+            there.iter().enumerate().flat_map(|(at, one)| there[at + 1..].iter().map(move |other| (one, other)));
+        if pairs.any(|(one, other)| place(one) < place(other) && is_known(one, other)) {
             return Outcome::Differs(format!("there one gets by {there:?}, and back by {back:?}: {whole}"));
         }
     }
@@ -39,23 +46,35 @@ pub fn reverse(base: Written<'_>, changed: Written<'_>) -> Outcome {
 struct Told {
     turns: Vec<Side>,
     climbs: Vec<Climb>,
-    rooms: Vec<String>,
+    rooms: Vec<Room>,
     floors: Vec<String>,
 }
 
+/// A room that a text names, and the frame of which it speaks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Room {
+    name: String,
+    frame: Option<usize>,
+}
+
 impl Told {
-    fn of(text: &str) -> Self {
+    fn of(written: Written<'_>) -> Self {
         let mut told = Self::default();
-        for event in read(text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
+        for event in read(written.text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
             match event.what {
                 What::Turn(side) => told.turns.push(side),
+                // "Take the door on the left" is a turn, too.
+                What::Place(Place { side: Some(side), ref name, .. }) if goes_through(name) => told.turns.push(side),
                 What::Climb(climb) => told.climbs.push(climb),
                 What::Floor(floor) => told.floors.extend(floor.number.map(|number| number.to_string())),
                 What::Place(place) if place.is_room => {
                     let name = room_name(&place.name).unwrap_or(&place.name).to_owned();
                     // The stairs are told as a climb.
-                    if name != "stairs" && told.rooms.last() != Some(&name) {
-                        told.rooms.push(name);
+                    if name != "stairs" && told.rooms.last().is_none_or(|room| room.name != name) {
+                        let is_it =
+                            |mention: &&Mention| mention.span[0] < event.span[1] && event.span[0] < mention.span[1];
+                        let here = written.mentions.iter().find(is_it);
+                        told.rooms.push(Room { name, frame: here.map(|mention| mention.frame) });
                     }
                 }
                 _ => {}
@@ -63,6 +82,36 @@ impl Told {
         }
         told
     }
+}
+
+/// Openings that are no doors.
+const DOORWAYS: [&str; 4] = ["doorway", "opening", "entrance", "exit"];
+
+/// Whether one goes through what has that name, or into it.
+fn goes_through(name: &str) -> bool {
+    is_room(name) || DOORWAYS.contains(&name) || thing(name).is_some_and(|thing| thing.class == Class::Door)
+}
+
+/// The rooms that both texts tell once, as either has them. Two of one name between which one passes another room are two rooms.
+fn rooms_of_both(there: &[Room], back: &[Room], last_frame: usize) -> [Vec<String>; 2] {
+    let names = |rooms: &[Room]| rooms.iter().map(|room| room.name.clone()).collect::<Vec<String>>();
+    let from_the_start = |room: &Room| Some((room.name.clone(), last_frame.saturating_sub(room.frame?)));
+    let back_frames: Vec<(String, usize)> = back.iter().filter_map(from_the_start).collect();
+    let frames: Vec<(String, usize)> = there.iter().filter_map(|room| Some((room.name.clone(), room.frame?))).collect();
+    let is_one = |name: &String| {
+        let frame = |rooms: &[(String, usize)]| rooms.iter().find(|(other, _)| other == name).map(|(_, frame)| *frame);
+        let Some((one, other)) = frame(&frames).zip(frame(&back_frames)) else { return true };
+        let between = one.min(other) + 1..one.max(other);
+        !frames.iter().chain(&back_frames).any(|(other, frame)| other != name && between.contains(frame))
+    };
+    both(&names(there), &names(back)).map(|names| names.into_iter().filter(is_one).collect())
+}
+
+/// Whether a text speaks of two rooms at frames that are not beside each other, where it is known: one who stands in a door may be
+/// in either.
+fn apart(rooms: &[Room], one: &str, other: &str) -> Option<bool> {
+    let frame = |name: &str| rooms.iter().find(|room| room.name == name)?.frame;
+    Some(frame(one)?.abs_diff(frame(other)?) > 1)
 }
 
 /// What both lists hold just once, as either has it.
@@ -93,9 +142,10 @@ fn climb_back(climb: Climb) -> Climb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use wayword_core::MentionKind;
 
     fn judged(there: &str, back: &str) -> Outcome {
-        let of = |text| Written { text, mentions: &[] };
+        let of = |text| Written { text, mentions: &[], last_frame: 0 };
         reverse(of(there), of(back))
     }
 
@@ -108,6 +158,30 @@ mod tests {
             "Leave the kitchen. Turn left in the hallway, go down the stairs, turn right and stop in the bedroom.";
         assert_eq!(judged(THERE, back), Outcome::Holds);
         assert_eq!(judged("Stop by the lamp.", "Stop by the bed."), Outcome::NotTold);
+        let by_doors = "Leave the kitchen. Take the door on the left in the hallway, go down the stairs, turn right and stop \
+                        in the bedroom.";
+        assert_eq!(judged(THERE, by_doors), Outcome::Holds);
+    }
+
+    #[test]
+    fn two_rooms_of_one_name_are_not_taken_for_one() {
+        let (there, back) =
+            ("Go down the hallway and stop in the bedroom.", "Go down the hallway and stop in the bedroom.");
+        let rooms = |hallway, bedroom| {
+            let room = |name: &str, frame| {
+                let from = there.find(name).unwrap();
+                Mention { span: [from, from + name.len()], kind: MentionKind::Room, frame }
+            };
+            vec![room("hallway", hallway), room("bedroom", bedroom)]
+        };
+        let judged = |mentions: Vec<Mention>| {
+            let base = rooms(3, 8);
+            let of = |text, mentions| Written { text, mentions, last_frame: 9 };
+            reverse(of(there, base.as_slice()), of(back, &mentions))
+        };
+        // Back into the bedroom of the start, at the frame 0 of the way there; and into that of the end.
+        assert_eq!(judged(rooms(4, 9)), Outcome::Holds);
+        assert!(matches!(judged(Vec::new()), Outcome::Differs(_)));
     }
 
     #[test]

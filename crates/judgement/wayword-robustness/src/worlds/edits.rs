@@ -15,8 +15,10 @@ const ADDED_AT_M: (f64, f64) = (1.2, 0.9);
 const ADDED_BELOW_M: f64 = 0.8;
 /// A thing that is added is seen from no farther than this, metres.
 const SEEN_M: f64 = 4.0;
-/// Colours that a thing may get: the first that differs from its own.
-const COLOURS: [&str; 2] = ["purple", "orange"];
+/// A colour has so many words at most.
+const COLOUR_WORDS: usize = 2;
+/// Colours that a thing may get: the first that neither it nor a namesake has.
+const COLOURS: [&str; 5] = ["purple", "orange", "pink", "turquoise", "red"];
 
 /// What is labelled along a path: for each frame the labels all around it.
 #[derive(Debug, Clone, Default)]
@@ -66,14 +68,14 @@ impl Labelled {
         let told = landmarks.filter_map(|mention| {
             let words = text.get(mention.span[0]..mention.span[1])?;
             let label = self.0.get(mention.frame)?.iter().find(|label| agree(&label.name, words))?;
-            let before = text[..mention.span[0]].split_whitespace().next_back();
-            Some(self.thing(words, &label.name, before))
+            let from = text[..mention.span[0]].rmatch_indices(' ').nth(COLOUR_WORDS).map_or(0, |(at, _)| at + 1);
+            Some(self.thing(words, &label.name, &text[from..mention.span[1]]))
         });
         told.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
     }
 
-    /// A thing of that name. `before` is the word before its name: its colour, where it is one.
-    fn thing(&self, words: &str, name: &str, before: Option<&str>) -> Thing {
+    /// A thing of that name, in words of a text. `said` are these and the few before them.
+    fn thing(&self, words: &str, name: &str, said: &str) -> Thing {
         let (mut objects, mut seen_from, mut colours) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
         for (frame, labels) in self.0.iter().enumerate() {
             let alike: Vec<&Label> = labels.iter().filter(|label| agree(&label.name, name)).collect();
@@ -83,9 +85,22 @@ impl Labelled {
             objects.extend(alike.iter().map(|label| label.object.clone()));
             colours.extend(alike.iter().filter_map(|label| label.colour.clone()));
         }
-        let said = words.split_whitespace().chain(before);
-        let colour = said.into_iter().find(|word| colours.contains(*word)).map(str::to_owned);
+        // "Dark brown" is not "brown".
+        let is_said = |colour: &&String| format!(" {said} ").contains(&format!(" {colour} "));
+        let colour = colours.iter().filter(is_said).max_by_key(|colour| colour.len()).cloned();
         Thing { words: words.to_owned(), name: name.to_owned(), objects, seen_from, colour }
+    }
+
+    /// The things of a name and colour that are labelled anywhere along the path.
+    fn of_colour(&self, name: &str, colour: &str) -> BTreeSet<ObjectId> {
+        let is_it = |label: &&Label| agree(&label.name, name) && label.colour.as_deref() == Some(colour);
+        self.0.iter().flatten().filter(is_it).map(|label| label.object.clone()).collect()
+    }
+
+    /// Whether a thing of that name has a colour that people would call by such a word.
+    fn has_colour(&self, name: &str, colour: &str) -> bool {
+        let mut alike = self.0.iter().flatten().filter(|label| agree(&label.name, name));
+        alike.any(|label| label.colour.as_ref().is_some_and(|other| same_colour(other, colour)))
     }
 
     /// A thing that the text tells, drawn by the seed, and the world without it and its namesakes.
@@ -97,15 +112,15 @@ impl Labelled {
         Some((thing, Removed { objects }))
     }
 
-    /// A thing whose colour the text tells, drawn by the seed, and the world in which it and its namesakes have another.
+    /// A thing whose colour the text tells, drawn by the seed, and the world in which it and its namesakes of that colour have
+    /// another, which no namesake has.
     #[must_use]
     pub fn recoloured(&self, telling: Telling<'_>, seed: u64) -> Option<(Thing, Recoloured)> {
         let told: Vec<Thing> = self.told(telling).into_iter().filter(|thing| thing.colour.is_some()).collect();
         let thing = told.get(drawn(seed, "material", telling.path, told.len())?)?.clone();
-        let is_other = |colour: &&&str| !thing.colour.as_ref().is_some_and(|before| same_colour(before, colour));
-        let colour = (*COLOURS.iter().find(is_other)?).to_owned();
-        let objects = thing.objects.clone();
-        Some((thing, Recoloured { objects, colour }))
+        let colour = COLOURS.iter().find(|colour| !self.has_colour(&thing.name, colour))?;
+        let objects = self.of_colour(&thing.name, thing.colour.as_deref()?);
+        Some((thing, Recoloured { objects, colour: (*colour).to_owned() }))
     }
 
     /// A thing that nothing along the path is called, beside a frame that the seed draws, and the world with it.

@@ -60,6 +60,11 @@ impl Arm {
         }
     }
 
+    /// Whether it is known beforehand what its change has to do to a text.
+    pub(super) fn is_exact(&self) -> bool {
+        matches!(self, Self::Forward | Self::Changed(Change::Whole(_)))
+    }
+
     /// Whether one thing of the world is changed, another one for each text.
     pub(super) fn is_edit(&self) -> bool {
         matches!(self, Self::Changed(Change::Whole(Whole::Remove | Whole::Add | Whole::Material)))

@@ -124,14 +124,15 @@ impl<'a> Texts<'a> {
     fn outcome(&self, change: &Change, path: &str) -> Option<Outcome> {
         let Change::Whole(whole) = change else { return None };
         let arm = if *whole == Whole::Reverse { Arm::Forward } else { Arm::Unchanged };
-        let (_, before) = self.told(&arm.id(), path)?;
+        let (line, before) = self.told(&arm.id(), path)?;
         let (_, after) = self.told(&change.id(), path)?;
         let text = before.text.as_ref()?;
         let Some(changed) = &after.text else {
             return Some(Outcome::Differs("every text failed its checks after the change".to_owned()));
         };
-        let base = Written { text, mentions: &before.mentions };
-        let changed = Written { text: changed, mentions: &after.mentions };
+        let last_frame = line.path.frames.len().saturating_sub(1);
+        let base = Written { text, mentions: &before.mentions, last_frame };
+        let changed = Written { text: changed, mentions: &after.mentions, last_frame };
         let edit = after.edit.as_ref();
         let gone = || edit.map(|edit| Gone { name: &edit.name, seen_from: &edit.seen_from });
         Some(match whole {

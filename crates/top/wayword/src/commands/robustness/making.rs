@@ -14,7 +14,7 @@ use crate::{
     error::Error,
     follow::KnownScenes,
     item::Item,
-    pipeline::{RunPlatform, panoramas, write},
+    pipeline::{Ordered, RunPlatform, panoramas, write},
     settings::Settings,
     styles::Measured,
     team::Team,
@@ -55,6 +55,17 @@ pub(super) struct InArm<'a> {
     pub(super) demands: Demands<'a>,
     /// The other platform of the arm, where it has one.
     pub(super) elsewhere: Option<Elsewhere>,
+    /// What the unchanged world's texts are.
+    pub(super) unchanged: &'a Unchanged,
+}
+
+impl InArm<'_> {
+    /// Which candidate is written for each style. A choice among candidates weighs whole texts, so where it is known what a change
+    /// has to do to a text, the changed world gets the candidate that the unchanged one got.
+    fn candidates(&self, path: &Path) -> BTreeMap<String, u32> {
+        let before = self.unchanged.get(&path.id).filter(|_| self.arm.is_exact());
+        before.map(Line::candidates).unwrap_or_default()
+    }
 }
 
 impl Crew<'_> {
@@ -62,13 +73,13 @@ impl Crew<'_> {
     ///
     /// # Errors
     /// When a view cannot be had, or a model fails.
-    pub(super) fn line(&self, within: &InArm<'_>, path: &Path, unchanged: &Unchanged) -> Result<Line, Error> {
+    pub(super) fn line(&self, within: &InArm<'_>, path: &Path) -> Result<Line, Error> {
         let arm = within.arm;
         let all_frames = |path: &Path| (0..path.frames.len()).collect();
         match arm {
             Arm::Unchanged => self.line_of(within, self.team, self.platform, (path.clone(), all_frames(path)), None),
             Arm::Again => self.line_of(within, self.again, self.platform, (path.clone(), all_frames(path)), None),
-            Arm::Other => match other::other(self.platform, path, unchanged, self.seed)? {
+            Arm::Other => match other::other(self.platform, path, within.unchanged, self.seed)? {
                 Some(Other::Told(line)) => Ok(Line { arm: arm.id(), path: path.clone(), ..*line }),
                 Some(Other::New(other)) => {
                     let frames = all_frames(&other);
@@ -76,7 +87,7 @@ impl Crew<'_> {
                 }
                 None => Ok(Line::left_out(arm, path, "no other path of its building has as many hops")),
             },
-            Arm::Changed(change) if arm.is_edit() => self.edited(within, change, path, unchanged),
+            Arm::Changed(change) if arm.is_edit() => self.edited(within, change, path),
             Arm::Forward | Arm::Changed(_) => {
                 let sees_labels = self.eye.is_none() && self.base.settings.roles.models().is_empty();
                 let world = match &within.elsewhere {
@@ -132,7 +143,8 @@ impl Crew<'_> {
         let settings = Settings { seed, ..self.base.settings.clone() };
         let world = RunPlatform { platform, data: None, scenes: &within.scenes };
         let item = Item::Walk(Box::new(path.clone()));
-        let written = write(&item, &settings, world, team, styles, self.threads)?;
+        let only = within.candidates(path);
+        let written = write(&item, &settings, world, team, Ordered { styles, only: &only }, self.threads)?;
         let told = |(outcome, style): (Outcome, &Measured)| Told::of(&style.style.name, outcome);
         Ok(written.outcomes.into_iter().zip(styles).map(told).collect())
     }
@@ -156,11 +168,11 @@ impl Crew<'_> {
     }
 
     /// The texts of a path whose world has one thing changed: for each style one that its text tells.
-    fn edited(&self, within: &InArm<'_>, change: &Change, path: &Path, unchanged: &Unchanged) -> Result<Line, Error> {
+    fn edited(&self, within: &InArm<'_>, change: &Change, path: &Path) -> Result<Line, Error> {
         let labelled = Labelled::along(&panoramas(self.platform, path)?);
         let mut texts = Vec::new();
         for style in &self.base.styles {
-            let before = unchanged.get(&path.id).and_then(|line| line.told(&style.style.name));
+            let before = within.unchanged.get(&path.id).and_then(|line| line.told(&style.style.name));
             let Some((text, before)) = before.and_then(|told| Some((told.text.as_ref()?, told))) else { continue };
             let telling = Telling { text, mentions: &before.mentions, path };
             let Some((platform, edit)) = self.edit(change, &labelled, telling) else { continue };
@@ -171,6 +183,7 @@ impl Crew<'_> {
                 walks: within.walks,
                 demands: Demands::new(within.walks),
                 elsewhere: None,
+                unchanged: within.unchanged,
             };
             for told in self.texts(&own, self.team, platform.as_ref(), path, slice::from_ref(style))? {
                 texts.push(Told { edit: Some(edit.clone()), ..told });

@@ -246,11 +246,11 @@ fn make(
             _ => None,
         };
         let (scenes, demands) = (KnownScenes::new(), Demands::new(walks.as_ref()));
-        let within = InArm { arm, scenes, walks: walks.as_ref(), demands, elsewhere };
+        let within = InArm { arm, scenes, walks: walks.as_ref(), demands, elsewhere, unchanged: &unchanged };
         bar.inc((base.paths.len() - left.len()) as u64);
         let making = |path: &&Path| {
             interrupt::check()?;
-            crew.line(&within, path, &unchanged)
+            crew.line(&within, path)
         };
         in_order(&left, workers, making, |path, made| {
             bar.inc(1);

@@ -3,7 +3,8 @@
 use super::arm::Arm;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use wayword_core::{Mention, Path};
+use std::collections::BTreeMap;
+use wayword_core::{Instruction, Mention, Path};
 use wayword_synthesis::repair::Outcome;
 
 /// A path in one arm, with its texts.
@@ -28,6 +29,9 @@ pub(super) struct Told {
     pub(super) style: String,
     /// Its words; `None` where every text failed its checks.
     pub(super) text: Option<String>,
+    /// Which of several candidates it is.
+    #[serde(default)]
+    pub(super) candidate: u32,
     /// Its statements that have evidence.
     pub(super) mentions: Vec<Mention>,
     /// The one thing that was changed for this text.
@@ -53,11 +57,15 @@ pub(super) struct Edit {
 impl Told {
     /// What came of a text.
     pub(super) fn of(style: &str, outcome: Outcome) -> Self {
-        let (text, mentions) = match outcome {
-            Outcome::Accepted(instruction) => (Some(instruction.text), instruction.mentions),
-            Outcome::Rejected { .. } => (None, Vec::new()),
-        };
-        Self { style: style.to_owned(), text, mentions, edit: None, arrived: None }
+        let none =
+            Self { style: style.to_owned(), text: None, candidate: 0, mentions: Vec::new(), edit: None, arrived: None };
+        match outcome {
+            Outcome::Accepted(Instruction { text, mentions, provenance, .. }) => {
+                let candidate = provenance.chosen.map_or(0, |chosen| chosen.number);
+                Self { text: Some(text), candidate, mentions, ..none }
+            }
+            Outcome::Rejected { .. } => none,
+        }
     }
 }
 
@@ -75,6 +83,11 @@ impl Line {
     pub(super) fn left_out(arm: &Arm, path: &Path, reason: &str) -> Self {
         let left_out = Some(reason.to_owned());
         Self { arm: arm.id(), path: path.clone(), base_frame_of: Vec::new(), texts: Vec::new(), left_out }
+    }
+
+    /// Which candidate each of its texts is, by style.
+    pub(super) fn candidates(&self) -> BTreeMap<String, u32> {
+        self.texts.iter().map(|told| (told.style.clone(), told.candidate)).collect()
     }
 
     /// Its text of a style.
