@@ -8,6 +8,7 @@ mod bootstrap;
 pub mod captions;
 mod correlation;
 mod mcnemar;
+pub mod pictures;
 mod similarity;
 mod study;
 mod trajectory;

@@ -75,7 +75,8 @@ enum What {
     FitFollower(fit_follower::Flags),
     /// Count the words and clauses of datasets' texts that the reader understands, and show those that it does not.
     Coverage(coverage::Flags),
-    /// Correlate critics of texts (BLEU-4, ROUGE-L, CIDEr-D against people's) with the success of agents that walked by them.
+    /// Correlate critics of texts (words, BLEU-4, ROUGE-L, CIDEr-D, agreement with pictures) with the success of agents that walked by
+    /// them, or with what people in a study did and said.
     Critics(critics::Flags),
     /// Show instructions of each style, picked by seed, beside what people wrote.
     Sample {
@@ -213,6 +214,7 @@ enum What {
 fn main() -> ExitCode {
     let what = Cli::parse().what;
     let is_json = match &what {
+        What::Critics(flags) => flags.json,
         What::People(flags) => flags.json,
         What::Found(flags) => flags.judging.json,
         What::TellApart(flags) => flags.json,

@@ -3,9 +3,12 @@
 //! This is a library beside the binary, so that `wayword-measure` runs exactly what users run.
 
 mod at_once;
+pub mod by_pictures;
 mod calibration;
 pub mod calls;
 pub mod cli;
+#[cfg(feature = "local")]
+mod clip;
 pub mod commands;
 mod count;
 pub mod demands;

@@ -1,10 +1,11 @@
 //! The pictures of a run's frames, as files.
 
 use crate::error::Error;
-use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::jpeg::JpegEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat, ImageReader, codecs::jpeg::JpegEncoder};
 use std::{
-    fs,
-    path::{Path, PathBuf},
+    fs::{self, File},
+    io::{Cursor, Read},
+    path::{Component, Path, PathBuf},
 };
 use wayword_core::{Image, View};
 
@@ -47,6 +48,52 @@ fn jpeg(image: &Image) -> Result<Vec<u8>, ImageError> {
 #[must_use]
 pub fn file(folder: &Path, item: &str, frame: usize) -> PathBuf {
     folder.join(format!("{item}_{frame}.jpg"))
+}
+
+/// Largest picture that is read, bytes.
+pub(crate) const MOST_BYTES: u64 = 4 << 20;
+/// Largest side of a picture that is read, pixels: a small file can hold a picture that fills the memory.
+pub(crate) const MOST_SIDE_PX: u32 = 4096;
+
+/// A picture as it lies in a run's folder.
+pub(crate) struct Kept {
+    /// The bytes of the JPEG file.
+    pub(crate) jpeg: Vec<u8>,
+    pub(crate) width_px: u32,
+    pub(crate) height_px: u32,
+}
+
+/// The picture of a frame (from 0) of an item; `None` where there is none, it has more than `most_bytes`, or it is no JPEG.
+pub(crate) fn kept(folder: &Path, item: &str, frame: usize, most_bytes: u64) -> Option<Kept> {
+    let path = inside(folder, &format!("{item}_{frame}.jpg"))?;
+    // Not followed: a link could lead out of the folder.
+    let found = fs::symlink_metadata(&path).ok()?;
+    if !found.is_file() || found.len() > MOST_BYTES.min(most_bytes) {
+        return None;
+    }
+    let mut jpeg = Vec::new();
+    File::open(&path).ok()?.take(MOST_BYTES).read_to_end(&mut jpeg).ok()?;
+    let (width_px, height_px) =
+        ImageReader::with_format(Cursor::new(&jpeg), ImageFormat::Jpeg).into_dimensions().ok()?;
+    let is_fit = |side: u32| (1..=MOST_SIDE_PX).contains(&side);
+    (is_fit(width_px) && is_fit(height_px)).then_some(Kept { jpeg, width_px, height_px })
+}
+
+impl Kept {
+    /// Its pixels; `None` if the file is damaged.
+    pub(crate) fn pixels(&self) -> Option<Image> {
+        let decoded = image::load_from_memory_with_format(&self.jpeg, ImageFormat::Jpeg).ok()?.into_rgb8();
+        Image::new(decoded.width(), decoded.height(), decoded.into_raw()).ok()
+    }
+}
+
+/// A file directly inside a folder, or `None` if its name leads elsewhere: ids of paths are free text.
+fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let mut parts = Path::new(name).components();
+    match (parts.next(), parts.next()) {
+        (Some(Component::Normal(only)), None) if only == name => Some(folder.join(only)),
+        _ => None,
+    }
 }
 
 /// Writes pictures as ITEM_FRAME.jpg. The caller has checked that `item` can be part of a file name. Returns whether there were any.

@@ -47,6 +47,11 @@ pub(crate) fn file_of(name: &str) -> PathBuf {
     if path.is_dir() { path.join(file::INSTRUCTIONS) } else { path }
 }
 
+/// The run folder that a set's name means, if it means one.
+pub(crate) fn run_of(name: &str) -> Option<PathBuf> {
+    Some(split(name).0).filter(|path| path.is_dir())
+}
+
 /// Splits the style off a name. A name that exists as a file or folder is not split.
 fn split(name: &str) -> (PathBuf, Option<&str>) {
     match name.rsplit_once('#') {

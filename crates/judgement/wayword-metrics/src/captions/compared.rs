@@ -107,21 +107,29 @@ pub fn anchored(sets: &Sets<'_>, drawing: &Drawing) -> Anchored {
 
 /// For each item, the first reference of an item of another path.
 fn strangers<'a>(items: &[&Described<'a>], seed: u64) -> Option<Vec<&'a Text>> {
-    let mut of_path: BTreeMap<&str, Vec<&'a Text>> = BTreeMap::new();
-    for item in items {
-        of_path.entry(item.cluster).or_default().push(item.references[0]);
+    let names: Vec<(&str, &str)> = items.iter().map(|item| (item.id, item.cluster)).collect();
+    Some(elsewhere(&names, seed)?.into_iter().map(|at| items[at].references[0]).collect())
+}
+
+/// For each item, given by its id and its path, the number of an item of another path, drawn by the seed; `None` where there is
+/// a single path.
+#[must_use]
+pub fn elsewhere(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
+    let mut of_path: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (at, (_, path)) in items.iter().enumerate() {
+        of_path.entry(path).or_default().push(at);
     }
     // In the order of their paths, an item of another path is before the first or after the last of its own path.
     let mut ordered = Vec::with_capacity(items.len());
     let mut start = BTreeMap::new();
-    for (path, texts) in &of_path {
+    for (path, of_path) in &of_path {
         start.insert(*path, ordered.len());
-        ordered.extend(texts.iter().copied());
+        ordered.extend(of_path);
     }
-    let draw = |item: &&Described<'a>| {
-        let (first, count) = (start[item.cluster], of_path[item.cluster].len());
+    let draw = |(id, path): &(&str, &str)| {
+        let (first, count) = (start[path], of_path[path].len());
         let others = ordered.len() - count;
-        let at = (others > 0).then(|| rng(seed, &["another path", item.id]).random_range(0..others))?;
+        let at = (others > 0).then(|| rng(seed, &["another path", id]).random_range(0..others))?;
         Some(ordered[if at < first { at } else { at + count }])
     };
     items.iter().map(draw).collect()

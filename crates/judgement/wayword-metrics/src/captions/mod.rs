@@ -15,7 +15,7 @@ mod text;
 
 pub use bleu::Counts;
 pub use cider::cider_d;
-pub use compared::{Anchored, Described, Figures, Sets, anchored};
+pub use compared::{Anchored, Described, Figures, Sets, anchored, elsewhere};
 pub use diversity::{Diversity, diversity};
 pub use ptb::ptb;
 pub use rouge::rouge_l;

@@ -31,6 +31,14 @@ impl ClipGrounder {
         Self { clip, images: Recent::new(KEPT), texts: Recent::new(KEPT) }
     }
 
+    /// Whether the model reads all of a phrase. The end of a longer one is cut off.
+    ///
+    /// # Errors
+    /// When the phrase cannot be made into tokens.
+    pub fn holds(&self, phrase: &str) -> Result<bool, ModelError> {
+        self.clip.holds(phrase).map_err(|error| self.failed(&error))
+    }
+
     fn failed(&self, error: &LocalError) -> ModelError {
         ModelError::Failed { model: self.clip.name().to_owned(), reason: error.to_string() }
     }

@@ -110,6 +110,14 @@ impl Clip {
         Ok(vectors)
     }
 
+    /// Whether the model reads all of a text. The end of a longer one is cut off.
+    ///
+    /// # Errors
+    /// When the text cannot be made into tokens.
+    pub fn holds(&self, text: &str) -> Result<bool, LocalError> {
+        Ok(self.tokenizer.ids(text, usize::MAX)?.len() <= self.longest)
+    }
+
     fn failed(&self, error: &candle_core::Error) -> LocalError {
         LocalError::Compute { model: self.name.clone(), problem: error.to_string() }
     }

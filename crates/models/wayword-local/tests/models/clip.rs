@@ -108,6 +108,14 @@ fn a_score_is_the_cosine_of_picture_and_phrase() {
 }
 
 #[test]
+fn it_is_known_which_texts_are_cut_off() {
+    let grounder = ClipGrounder::new(load(&fixture("clip")).unwrap());
+    // The model reads 18 tokens, of which two are the ends; a letter is a token here.
+    let held = ["a b c d e f g h i j k l m n o p", "a b c d e f g h i j k l m n o p q"];
+    assert_eq!(held.map(|text| grounder.holds(text).unwrap()), [true, false]);
+}
+
+#[test]
 fn a_view_without_a_picture_does_not_fail_the_others() {
     let (grounder, expected) = (ClipGrounder::new(load(&fixture("clip")).unwrap()), expected());
     let drawn = |at: usize| view(Some(drawn(expected.images[at].size)));

@@ -7,6 +7,7 @@ mod evaluate;
 mod ledger;
 mod models;
 mod perceive;
+mod pictures;
 mod robustness;
 mod similarity;
 mod study;
@@ -24,6 +25,7 @@ pub use evaluate::Evaluate;
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
+pub use pictures::Pictured;
 pub use robustness::Robustness;
 pub use similarity::{By, Similarity, Tokens};
 pub use study::{

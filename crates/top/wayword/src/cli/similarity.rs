@@ -1,5 +1,6 @@
 //! `wayword similarity` as the user types it.
 
+use super::Pictured;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -14,7 +15,9 @@ Examples:
       Compare texts of different datasets that describe the same paths.
   wayword similarity runs/a runs/b --style r2r --encoder words      (counts words, needs no model)
   wayword similarity runs/val_seen#r2r R2R_val_seen.json --by path --metrics
-      BLEU, ROUGE-L and CIDEr-D as papers print them, beside another person's text and another path's text.")]
+      BLEU, ROUGE-L and CIDEr-D as papers print them, beside another person's text and another path's text.
+  wayword similarity runs/val_seen#r2r R2R_val_seen.json --by path --metrics --clip hf/openai/clip-vit-base-patch32
+      The same, and how well the texts agree with the run's pictures.")]
 pub struct Similarity {
     /// Instructions: a run folder, or a file in R2R, REVERIE, RxR, VLN-CE or Wayword format. Add #STYLE to take one style.
     #[arg(value_name = "A")]
@@ -52,6 +55,9 @@ pub struct Similarity {
     /// The Java that runs them.
     #[arg(long, value_name = "PROGRAM", default_value = "java", requires = "metrics")]
     pub java: PathBuf,
+    /// The pictures that the metrics hold texts against.
+    #[command(flatten)]
+    pub pictured: Pictured,
     /// Number of bootstrap resamples for the intervals.
     #[arg(long, value_name = "N", default_value_t = 2000, value_parser = clap::value_parser!(u32).range(100..=100_000))]
     pub resamples: u32,

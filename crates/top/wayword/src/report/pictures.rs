@@ -1,19 +1,13 @@
 //! Pictures of frames, from the run's own folder only.
 
 use super::data_uri;
-use crate::run::file;
-use image::{ImageFormat, ImageReader};
-use serde::Serialize;
-use std::{
-    fs::{self, File},
-    io::{Cursor, Read},
-    path::{Component, Path, PathBuf},
+use crate::{
+    pictures::{Kept, kept},
+    run::file,
 };
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 
-/// Largest picture, bytes.
-const MOST_BYTES: u64 = 4 << 20;
-/// Largest side of a picture, pixels: a small file can hold a picture that fills a browser's memory.
-const MOST_SIDE_PX: u32 = 4096;
 /// All pictures of a page together, bytes, so that a phone can open it.
 const MOST_BYTES_TOGETHER: u64 = 64 << 20;
 
@@ -49,36 +43,18 @@ impl Pictures {
     }
 
     fn load(&mut self, item: &str, frame: usize) -> Option<Picture> {
-        let path = inside(&self.folder, &format!("{item}_{frame}.jpg"))?;
-        // Not followed: a link could lead out of the folder.
-        let found = fs::symlink_metadata(&path).ok()?;
-        if !found.is_file() || found.len() > MOST_BYTES.min(self.left_bytes) {
-            return None;
-        }
-        let mut bytes = Vec::new();
-        File::open(&path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
-        let (width_px, height_px) =
-            ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Jpeg).into_dimensions().ok()?;
-        if !(1..=MOST_SIDE_PX).contains(&width_px) || !(1..=MOST_SIDE_PX).contains(&height_px) {
-            return None;
-        }
-        self.left_bytes = self.left_bytes.saturating_sub(bytes.len() as u64);
-        Some(Picture { address: data_uri::jpeg(&bytes), width_px, height_px })
-    }
-}
-
-/// A file directly inside a folder, or `None` if its name leads elsewhere: ids of paths are free text.
-fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
-    let mut parts = Path::new(name).components();
-    match (parts.next(), parts.next()) {
-        (Some(Component::Normal(only)), None) if only == name => Some(folder.join(only)),
-        _ => None,
+        let Kept { jpeg, width_px, height_px } = kept(&self.folder, item, frame, self.left_bytes)?;
+        self.left_bytes = self.left_bytes.saturating_sub(jpeg.len() as u64);
+        Some(Picture { address: data_uri::jpeg(&jpeg), width_px, height_px })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pictures::{MOST_BYTES, MOST_SIDE_PX};
+    use image::ImageFormat;
+    use std::{fs, io::Cursor};
 
     fn jpeg(width_px: u32, height_px: u32) -> Vec<u8> {
         let mut bytes = Vec::new();

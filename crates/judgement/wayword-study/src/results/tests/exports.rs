@@ -40,6 +40,27 @@ fn every_column_of_every_file_is_in_the_codebook() {
     }
 }
 
+/// `wayword-measure critics` reads these.
+#[test]
+fn the_files_have_what_critics_are_correlated_with() {
+    let of_walks = ["success", "spl", "ndtw", "easy", "confident", "demanding"];
+    let of_ratings = ["similar", "accurate", "ghosts", "reachable"];
+    for (mode, name, measures) in [(Mode::Follow, "follow", &of_walks[..]), (Mode::Rate, "rate", &of_ratings[..])] {
+        let files = files(&small(mode));
+        let about: serde_json::Value = serde_json::from_str(&files["results.json"]).unwrap();
+        assert_eq!((&about["format"], &about["mode"]), (&"wayword-study-results/1".into(), &name.into()));
+        let scales = about["scales"].as_array().unwrap().iter().map(|scale| scale["name"].as_str().unwrap());
+        assert!(measures.ends_with(&scales.collect::<Vec<_>>()));
+        let (items, answers) = (read(&files["items.csv"]), read(&files["answers.csv"]));
+        for name in ["item", "route", "scene", "kind", "text"] {
+            column(&items, name);
+        }
+        for name in ["item", "in_everybody", "in_finished"].iter().chain(measures) {
+            column(&answers, name);
+        }
+    }
+}
+
 #[test]
 fn files_hold_no_id_of_the_database_no_clock_and_no_order_of_consent() {
     for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {

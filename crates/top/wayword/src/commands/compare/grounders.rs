@@ -80,16 +80,7 @@ fn score(detector: &Arc<dyn Detector>) -> String {
 
 #[cfg(feature = "local")]
 fn clip(name: &str, output: &Output) -> Result<Box<dyn Grounder>, Error> {
-    use crate::download_bar::DownloadBar;
-    use wayword_local::{Clip, ClipGrounder, Device, Hub, HubConfig, ModelName, Needs, Precision};
-    let needs = Needs::default()
-        .weights()
-        .required(&["config.json", "tokenizer.json"])
-        .optional(&["preprocessor_config.json", "processor_config.json"]);
-    let folder =
-        Hub::new(HubConfig::from_env()?)?.folder(&ModelName::parse(name)?, &needs, &DownloadBar::new(output))?;
-    let clip = Clip::load(name, &folder.path, &Device::cpu(), Precision::F32)?;
-    Ok(Box::new(ClipGrounder::new(clip)))
+    Ok(Box::new(crate::clip::grounder(name, output)?))
 }
 
 #[cfg(not(feature = "local"))]

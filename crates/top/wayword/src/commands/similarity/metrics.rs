@@ -3,12 +3,14 @@
 use super::{
     Compared, LEVEL,
     java::{self, Outside},
+    pictures::{self, ByPictures},
     sides,
 };
 use crate::{
     cli::{By, Similarity as Args, Tokens},
     count::count,
     error::Error,
+    output::Output,
     texts::{Items, Texts},
 };
 use serde::Serialize;
@@ -33,6 +35,9 @@ pub(super) struct Report {
     /// METEOR and SPICE, where the user has them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     outside: Vec<Outside>,
+    /// How well the texts agree with pictures, if a CLIP was named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pictures: Option<ByPictures>,
     diversity: Sides,
 }
 
@@ -86,7 +91,10 @@ impl Reader<'_> {
 }
 
 /// The metrics of A's texts against B's.
-pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Result<Report, Error> {
+pub(super) fn of(args: &Args, (a, b): (&Items, &Items), output: &Output) -> Result<Report, Error> {
+    // A model or pictures that are not there are told before the metrics are computed.
+    let drawing = Drawing { resamples: args.resamples as usize, level: LEVEL, seed: args.seed };
+    let pictures = pictures::of(args, (a, b), &drawing, output)?;
     let mut reader = Reader { args, vocabulary: Vocabulary::default() };
     let (judged, references) = (reader.items(a), reader.items(b));
     let in_b = |id: &str| references.binary_search_by_key(&id, |(other, ..)| other).ok().map(|at| &references[at]);
@@ -97,7 +105,6 @@ pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Result<Report, Error>
         not_judged += texts.len() - 1;
         items.push(Described { id, cluster, text, references: references.iter().collect() });
     }
-    let drawing = Drawing { resamples: args.resamples as usize, level: LEVEL, seed: args.seed };
     let told = |items: &[(&str, &str, Vec<Text>)]| {
         let all: Vec<(&str, &Text)> =
             items.iter().flat_map(|(_, path, texts)| texts.iter().map(move |text| (*path, text))).collect();
@@ -118,6 +125,7 @@ pub(super) fn of(args: &Args, (a, b): (&Items, &Items)) -> Result<Report, Error>
         level: LEVEL,
         figures: anchored(&sets, &drawing),
         outside: java::of(args, &sets, &reader.vocabulary)?,
+        pictures,
         diversity: Sides { a: told(&judged), b: told(&references) },
     })
 }
@@ -144,6 +152,9 @@ impl fmt::Display for Report {
             let [all, rest, person, other] = [all, rest, person, other_path]
                 .map(|of| of.map_or_else(|| "-".to_owned(), |value| format!("{:.1}", value * 100.0)));
             writeln!(f, "{name}: A {all}; but the first {rest}, another person {person}, another path {other}")?;
+        }
+        if let Some(pictures) = &self.pictures {
+            write!(f, "\n{pictures}")?;
         }
         writeln!(f, "\n{:<44} {:>8} {:>8}", "diversity", "A", "B")?;
         let [a, b] = [&self.diversity.a, &self.diversity.b].map(of_diversity);
@@ -191,7 +202,7 @@ fn share(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.3}"))
 }
 
-fn percent(Estimate { mean, low, high, .. }: &Estimate) -> String {
+pub(super) fn percent(Estimate { mean, low, high, .. }: &Estimate) -> String {
     let [mean, low, high] = [mean, low, high].map(|value| format!("{:.1}", value * 100.0));
     format!("{mean} ({low} to {high})")
 }

@@ -2,6 +2,7 @@
 
 mod java;
 mod metrics;
+mod pictures;
 
 use crate::{
     cli::Similarity as Args,
@@ -26,8 +27,11 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
         let problem = format!("{} and {} have no item in common", args.a, args.b);
         return Err(Error::usage(problem, "items are matched by id; --by path matches them by scene and path"));
     }
+    if args.pictured.clip.is_some() && !args.metrics {
+        return Err(Error::usage("--clip is a metric, and none are asked for", "give --metrics too"));
+    }
     if args.metrics {
-        let report = metrics::of(args, (&a, &b))?;
+        let report = metrics::of(args, (&a, &b), output)?;
         output.data(&report, &report);
         return Ok(Exit::Done);
     }
