@@ -5,6 +5,8 @@
 //! where they are not sure.
 
 mod hallway;
+#[cfg(test)]
+mod houses;
 mod rules;
 
 pub(super) use rules::part;
@@ -24,6 +26,9 @@ const OVER_M: f64 = 4.0;
 const AROUND_M: [f64; 3] = [0.15, 0.3, 0.45];
 /// An eye nearer than this to another room, ahead or behind, stands in the opening between them, metres.
 const THRESHOLD_M: f64 = 0.25;
+/// An eye nearer than this to another room at its side stands in the wall's opening and sees the jamb, metres: nobody
+/// stands so near to a wall.
+const ASIDE_M: f64 = 0.15;
 /// How far ahead the room is that an eye in an opening sees, metres.
 const AHEAD_M: f64 = 0.5;
 /// Distance of two places at which the floor is looked up, metres: less than the thickness of a wall, under which there
@@ -85,26 +90,24 @@ impl Rooms {
         rooms
     }
 
-    /// The name of the room that an eye sees: the one it is in, or in an opening the one ahead.
+    /// The name of the room that an eye sees: the one it is in, or in an opening the one ahead. In an opening along whose
+    /// wall it looks, it is between two rooms and sees neither.
     pub(super) fn seen(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
-        self.name(self.around(eye, heading).or_else(|| self.near(eye))?)
+        let Some(here) = self.below(eye, UNDER_M) else { return self.name(self.near(eye)?) };
+        let (sin, cos) = libm::sincos(heading.rad());
+        let (ahead, aside) = (DVec3::new(sin, cos, 0.0), DVec3::new(cos, -sin, 0.0));
+        let is_edge = |way: DVec3, far_m: f64| self.walk(here, eye, way, far_m).any(|at| at.room != here.room);
+        if is_edge(ahead, THRESHOLD_M) || is_edge(-ahead, THRESHOLD_M) {
+            return self.name(self.walk(here, eye, ahead, AHEAD_M).last().unwrap_or(here));
+        }
+        let is_between = is_edge(aside, ASIDE_M) || is_edge(-aside, ASIDE_M);
+        (!is_between).then(|| self.name(here)).flatten()
     }
 
     /// On stairs that lie in a room without a name, one is on the stairs.
     fn name(&self, surface: Surface) -> Option<&'static str> {
         let stairs = (surface.part == Part::Stairs).then_some("stairs");
         self.names.get(&surface.room).copied().or(stairs)
-    }
-
-    /// The floor under an eye, or ahead if it stands in an opening.
-    fn around(&self, eye: DVec3, heading: Heading) -> Option<Surface> {
-        let here = self.below(eye, UNDER_M)?;
-        let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0);
-        let is_other = |surface: &Surface| surface.room != here.room;
-        let on_edge =
-            [ahead, -ahead].into_iter().any(|way| self.walk(here, eye, way, THRESHOLD_M).any(|at| is_other(&at)));
-        let last = on_edge.then(|| self.walk(here, eye, ahead, AHEAD_M).last()).flatten();
-        Some(last.unwrap_or(here))
     }
 
     /// The floor from place to place along a way, as far as it goes on without a gap or a ledge.

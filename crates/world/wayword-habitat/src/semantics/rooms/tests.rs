@@ -58,6 +58,9 @@ fn in_an_opening_the_room_ahead_is_seen_and_never_one_behind_a_wall() {
         assert_eq!(seen(&rooms, x, 2.0, EAST), Some("bathroom"), "{x}");
         assert_eq!(seen(&rooms, x, 2.0, WEST), Some("bedroom"), "{x}");
     }
+    // Along the wall it sees neither.
+    assert_eq!(seen(&rooms, 4.0, 2.0, 0.0), None);
+    assert_eq!(seen(&rooms, 3.5, 2.0, 0.0), Some("bedroom"));
     assert_eq!(seen(&rooms, 3.5, 2.0, EAST), Some("bedroom"));
     assert_eq!(seen(&rooms, 3.85, 0.5, EAST), Some("bedroom"));
 }
