@@ -70,7 +70,8 @@ impl Rooms {
         // What has no triangles is nowhere.
         for thing in things.iter().filter(|thing| thing.bounds.is_some()) {
             if let Some(room) = thing.room {
-                inside.entry(room).or_default().extend(thing.name.as_deref());
+                let ceiling = (thing.part == Some(Part::Ceiling)).then_some("ceiling");
+                inside.entry(room).or_default().extend(thing.name.as_deref().or(ceiling));
             }
         }
         let verdicts = inside.into_iter().map(|(room, names)| (room, verdict(names.into_iter())));

@@ -78,7 +78,9 @@ fn a_hole_in_the_floor_and_a_missing_floor_are_bridged() {
 fn stairs_are_stairs_unless_their_room_has_a_name() {
     let stairs = ("stairs", 1, [0.0, 1.0, 0.0, 4.0], 0.3);
     assert_eq!(seen(&rooms(&[stairs]), 0.5, 2.0, EAST), Some("stairs"));
-    let within = [stairs, ("couch", 1, [3.0, 4.0, 0.0, 1.0], 0.5), ("coffee table", 1, [3.0, 4.0, 1.5, 2.0], 0.4)];
+    let roof = ("ceiling", 1, [0.0, 4.0, 0.0, 4.0], 2.6);
+    let within =
+        [stairs, roof, ("couch", 1, [3.0, 4.0, 0.0, 1.0], 0.5), ("coffee table", 1, [3.0, 4.0, 1.5, 2.0], 0.4)];
     assert_eq!(seen(&rooms(&within), 0.5, 2.0, EAST), Some("living room"));
 }
 
