@@ -134,6 +134,11 @@ impl Columns {
         surfaces
     }
 
+    /// Most triangles that a look at one place goes through.
+    pub(crate) fn most_near(&self) -> usize {
+        self.starts.windows(2).map(|cell| (cell[1] - cell[0]) as usize).max().unwrap_or_default()
+    }
+
     /// The same surfaces, in no order: height in metres, and the tag of the triangle.
     pub(crate) fn tags_at(&self, place: DVec3) -> impl Iterator<Item = (f64, u32)> {
         let members = self.near(place).iter().map(|number| *number as usize);

@@ -20,14 +20,26 @@ const ROOMS: usize = 3;
 const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
 /// If floors touch along more than this, a room goes on in another, metres: its number stands for a part of a room.
 const OPEN_M: f64 = 2.6;
+/// Most rooms that are looked at, and most triangles near one place: real scenes have fewer, and more would take long.
+const MOST_ROOMS: usize = 64;
+const MOST_NEAR: usize = 1000;
 /// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
 const STEP_M: f64 = 0.05;
 
 impl Rooms {
-    /// Whether a room in which nothing speaks for another name is a hallway: its floor is narrow and long, it has a
+    /// The hallways among rooms in which nothing speaks for another name.
+    pub(super) fn hallways(&self, silent: &[u32], things: &[Thing]) -> Vec<u32> {
+        if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MOST_NEAR) {
+            return Vec::new();
+        }
+        let looked_at = silent.iter().copied().take(MOST_ROOMS);
+        looked_at.filter(|room| self.is_hallway(*room, things)).collect()
+    }
+
+    /// Whether it is a hallway: its floor is narrow and long, it has a
     /// ceiling, and it leads to three rooms or more, of which one is a bathroom or has stairs. A balcony has none of these
     /// last.
-    pub(super) fn is_hallway(&self, room: u32, things: &[Thing]) -> bool {
+    fn is_hallway(&self, room: u32, things: &[Thing]) -> bool {
         let bounds = |part: Part| {
             let of_room = things.iter().filter(|thing| thing.room == Some(room) && thing.part == Some(part));
             of_room.filter_map(|thing| thing.bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))

@@ -86,7 +86,7 @@ impl Rooms {
         let owners = things.iter().map(|thing| thing.room.zip(thing.part)).collect();
         let shell = (!shell.is_empty()).then(|| Columns::tagged(shell.into_iter()));
         let mut rooms = Self { shell, owners, names };
-        let halls: Vec<u32> = silent.into_iter().filter(|room| rooms.is_hallway(*room, things)).collect();
+        let halls = rooms.hallways(&silent, things);
         rooms.names.extend(halls.into_iter().map(|room| (room, hallway::NAME)));
         rooms
     }
