@@ -2,7 +2,8 @@
 """Makes MuJoCo models of generated houses, for mujoco_world.py: `house_mujoco.py HOUSES OUT`.
 
 HOUSES is a folder that `wayword house` wrote, or the folder `houses` that `wayword robustness --change platform=habitat`
-wrote. It needs NumPy. OUT gets a model for each house, and a world file for `--platform process`."""
+wrote. It needs NumPy. OUT gets a model for each house, NAME.rooms.json with the rooms of its plan, and a world file for
+`--platform process`."""
 import collections, json, pathlib, struct, sys  # noqa: E401
 import numpy as np
 SHELL = {"wall", "floor", "ceiling", "roof"}  # what gets no label
@@ -59,6 +60,14 @@ def model(house):
     )
 
 
+def save_rooms(house, file):
+    """The rooms of the house's plan, for mujoco_world.py: name, height of the floor, and [x from, y from, x to, y to]."""
+    plan = house.with_name(f'{house.name.split(".")[0]}.navigation.json')
+    if plan.exists():
+        rooms = json.loads(plan.read_text())["rooms"]
+        file.write_text(json.dumps([{key: room[key] for key in ("name", "floor_m", "area_m")} for room in rooms]))
+
+
 def main(houses, out):
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -66,6 +75,7 @@ def main(houses, out):
     for house in sorted(pathlib.Path(houses).rglob("*.semantic.glb")):
         file = out.resolve() / f'{house.name.split(".")[0]}.xml'
         file.write_text(model(house))
+        save_rooms(house, file.with_suffix(".rooms.json"))
         files.append(str(file))
     if not files:
         sys.exit(f"{houses}: there is no *.semantic.glb; name the folder that `wayword house` wrote")

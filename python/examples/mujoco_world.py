@@ -3,9 +3,9 @@
 
 `mujoco_world.py MODEL.xml ...` serves your own models: objects are bodies with a name, of which what follows a # only
 tells namesakes apart, and one walks on the geom named `floor`. Without an argument it serves flat.xml, which is beside
-this file. house_mujoco.py makes models of generated houses.
+this file. house_mujoco.py makes models of generated houses, with the rooms of each in NAME.rooms.json beside it.
 """
-import functools, math, os, pathlib, sys  # noqa: E401
+import functools, json, math, os, pathlib, sys  # noqa: E401
 if "DISPLAY" not in os.environ:
     os.environ.setdefault("MUJOCO_GL", "egl")
 import mujoco  # noqa: E402
@@ -15,10 +15,22 @@ import wayword_platform as kit  # noqa: E402
 EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and the least distance to anything
 SHOWN = 0.0015  # what shows on a smaller share of a picture gets no label
 FILES = {name.stem: name for name in map(pathlib.Path, sys.argv[1:] or [pathlib.Path(__file__).with_name("flat.xml")])}
+ROOMS = {scene: json.loads(rooms.read_text()) for scene, file in FILES.items() if (rooms := file.with_suffix(".rooms.json")).exists()}
+
+
+def room_at(scene, place, heading_rad):
+    """The room of an eye; where it stands in an opening, which is in no room's area, that of the room ahead."""
+    for far_m in (0, 0.5):
+        x, y = place[0] + far_m * math.sin(heading_rad), place[1] + far_m * math.cos(heading_rad)
+        for room in ROOMS.get(scene, []):
+            (x0, y0, x1, y1), over_m = room["area_m"], place[2] - EYE_M - room["floor_m"]
+            if x0 <= x <= x1 and y0 <= y <= y1 and -0.2 <= over_m < 2.5:
+                return room["name"]
+    return None
 
 
 class MuJoCo(kit.OpenWorld):
-    name, has_labels = "MuJoCo", True
+    name, has_labels, has_rooms = "MuJoCo", True, bool(ROOMS)
 
     def scenes(self):
         return sorted(FILES)
@@ -58,7 +70,8 @@ class MuJoCo(kit.OpenWorld):
         count = np.bincount(model.geom_bodyid[seen[seen >= 0]], minlength=model.nbody)
         bodies = np.flatnonzero(count >= SHOWN * seen.size).tolist()
         names = [(body, model.body(body).name.split("#")[0]) for body in bodies if body > 0]
-        return kit.View(picture, [kit.Label(str(body), name, data.xipos[body]) for body, name in names if name])
+        labels = [kit.Label(str(body), name, data.xipos[body]) for body, name in names if name]
+        return kit.View(picture, labels, room_at(scene, look.position, look.heading_rad))
 
 
 kit.serve(MuJoCo)

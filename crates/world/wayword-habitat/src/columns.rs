@@ -19,6 +19,8 @@ const HEADROOM_M: f64 = 1.8;
 #[derive(Debug)]
 pub(crate) struct Columns {
     triangles: Vec<[Vec3; 3]>,
+    /// What each triangle belongs to, as the caller numbers it.
+    tags: Vec<u32>,
     corner: glam::Vec2,
     side_m: f32,
     /// Cells along x and along y.
@@ -41,17 +43,22 @@ pub(crate) enum Over {
 
 impl Columns {
     pub(crate) fn new(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+        Self::tagged(triangles.map(|triangle| (triangle, 0)))
+    }
+
+    /// Columns of triangles that belong to something, which [`Columns::tags_at`] returns.
+    pub(crate) fn tagged(triangles: impl Iterator<Item = ([Vec3; 3], u32)>) -> Self {
         // An upright triangle has no area seen from above.
         let lies = |[a, b, c]: &[Vec3; 3]| {
             let doubled = (*b - *a).truncate().perp_dot((*c - *a).truncate());
             a.is_finite() && b.is_finite() && c.is_finite() && doubled.abs() > 1e-9
         };
-        let triangles: Vec<[Vec3; 3]> = triangles.filter(lies).collect();
+        let (triangles, tags): (Vec<[Vec3; 3]>, Vec<u32>) = triangles.filter(|(triangle, _)| lies(triangle)).unzip();
         let corners = || triangles.iter().flatten().map(|corner| corner.truncate());
         let low = corners().reduce(glam::Vec2::min).unwrap_or_default();
         let high = corners().reduce(glam::Vec2::max).unwrap_or_default();
-        let mut columns =
-            Self { triangles, corner: low, side_m: FINEST_M, size: [1, 1], starts: Vec::new(), members: Vec::new() };
+        let (starts, members) = (Vec::new(), Vec::new());
+        let mut columns = Self { triangles, tags, corner: low, side_m: FINEST_M, size: [1, 1], starts, members };
         let extent = high - low;
         loop {
             // Casts saturate; one more cell holds what lies on the far edge.
@@ -106,20 +113,36 @@ impl Columns {
         (near..=far).flat_map(move |y| (left..=right).map(move |x| y * wide + x))
     }
 
-    /// The surfaces that a vertical line through a position meets, from the lowest: height in metres, and whether it
-    /// faces up.
-    fn surfaces(&self, place: DVec3) -> Vec<(f64, bool)> {
+    /// The triangles over and under a position: those of its cell.
+    fn near(&self, place: DVec3) -> &[u32] {
         let at = (place.truncate().as_vec2() - self.corner) / self.side_m;
         let inside = at.min_element() >= 0.0 && (at.x as usize) < self.size[0] && (at.y as usize) < self.size[1];
         if !inside {
-            return Vec::new();
+            return &[];
         }
         let cell = at.y as usize * self.size[0] + at.x as usize;
-        let members = &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+        &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// The surfaces that a vertical line through a position meets, from the lowest: height in metres, and whether it
+    /// faces up.
+    fn surfaces(&self, place: DVec3) -> Vec<(f64, bool)> {
+        let members = self.near(place).iter();
         let mut surfaces: Vec<(f64, bool)> =
-            members.iter().filter_map(|number| met(&self.triangles[*number as usize], place)).collect();
+            members.filter_map(|number| met(&self.triangles[*number as usize], place)).collect();
         surfaces.sort_by(|a, b| a.0.total_cmp(&b.0));
         surfaces
+    }
+
+    /// Most triangles that a look at one place goes through.
+    pub(crate) fn most_near(&self) -> usize {
+        self.starts.windows(2).map(|cell| (cell[1] - cell[0]) as usize).max().unwrap_or_default()
+    }
+
+    /// The same surfaces, in no order: height in metres, and the tag of the triangle.
+    pub(crate) fn tags_at(&self, place: DVec3) -> impl Iterator<Item = (f64, u32)> {
+        let members = self.near(place).iter().map(|number| *number as usize);
+        members.filter_map(move |number| Some((met(&self.triangles[number], place)?.0, self.tags[number])))
     }
 
     /// What is above a position on the ground.

@@ -60,7 +60,7 @@ pub const PLATFORMS: [Listed; 7] = [
         name: "habitat",
         what: "AI Habitat's scenes, without Habitat",
         needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked",
-        offers: "pictures, geodesic paths; labels with semantic files",
+        offers: "pictures, geodesic paths; labels and rooms with semantic files",
         is_here: cfg!(feature = "habitat"),
     },
     Listed {

@@ -99,7 +99,7 @@ impl Home {
             Some(semantics) => Some(GroundTruth {
                 labels: semantics.labels(&camera, gaze).map_err(|error| self.refused(&error))?,
                 lists_objects: true,
-                room: semantics.room(eye).map(str::to_owned),
+                room: semantics.room(eye, gaze.heading).map(str::to_owned),
             }),
             None => None,
         };

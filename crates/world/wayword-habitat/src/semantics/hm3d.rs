@@ -43,13 +43,15 @@ fn entry(line: &str) -> Result<([u8; 3], Thing), String> {
     };
     let (id, colour, category, region) = columns().ok_or("does not have four columns: id, colour, category, region")?;
     let number: u32 = id.trim().parse().map_err(|_| format!("{id:.20?} is not an id"))?;
-    let _: i64 = region.trim().parse().map_err(|_| format!("{region:.20?} is not a region"))?;
+    let region: i64 = region.trim().parse().map_err(|_| format!("{region:.20?} is not a region"))?;
     let colour = colour.trim();
     let is_hex = colour.len() == 6 && colour.bytes().all(|byte| byte.is_ascii_hexdigit());
     let bits = u32::from_str_radix(colour, 16).ok().filter(|_| is_hex);
     let [_, red, green, blue] = bits.ok_or_else(|| format!("{colour:.20?} is not a 6-digit hex colour"))?.to_be_bytes();
     let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
-    Ok(([red, green, blue], Thing::new(id, category.trim().trim_matches('"'))))
+    // HM3D gives -1 to what lies in no room.
+    let room = u32::try_from(region).ok();
+    Ok(([red, green, blue], Thing { room, ..Thing::new(id, category.trim().trim_matches('"')) }))
 }
 
 #[cfg(test)]
@@ -59,12 +61,13 @@ mod tests {
 
     #[test]
     fn categories_may_hold_commas() {
-        let text = "HM3D Semantic Annotations\n1,BC0FF7,\"table, round\",3\r\n2,00ff10,\"wall\",0\n";
+        let text = "HM3D Semantic Annotations\n1,BC0FF7,\"table, round\",3\r\n2,00ff10,\"wall\",-1\n";
         let annotations = parse(text).unwrap();
         assert_eq!(annotations.by_colour, [([0xbc, 0x0f, 0xf7], 0), ([0, 0xff, 0x10], 1)].into());
         assert_eq!(annotations.things[0].name.as_deref(), Some("table round"));
         // A wall is a part of the building, so it has no name.
         assert_eq!(annotations.things[1].name, None);
+        assert_eq!([annotations.things[0].room, annotations.things[1].room], [Some(3), None]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Reads the semantic files of a scene.
 
-use super::{Semantics, Thing, hm3d, house, ply};
+use super::{Semantics, Thing, hm3d, house, ply, rooms::Rooms};
 use crate::{
     axes::wayword_from_habitat,
     fault::{self, FileError},
@@ -49,7 +49,7 @@ fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result
     let hm3d::Annotations { mut things, by_colour } =
         hm3d::parse(&text(annotations, HM3D_HINT)?).map_err(|reason| FileError::new(annotations, reason, HM3D_HINT))?;
     let model = Model::read(mesh, habitat_from_asset)?;
-    let mut meshes = Vec::new();
+    let (mut meshes, mut shells) = (Vec::new(), Vec::new());
     for each in model.meshes {
         let texture = model.materials.get(each.material).and_then(|material| material.texture);
         let texture = texture.and_then(|texture| model.textures.get(texture));
@@ -61,6 +61,7 @@ fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result
         let thing = |corners: [u32; 3]| colour(corners).and_then(|colour| by_colour.get(&colour)).copied();
         let told: Vec<Told> = each.triangles.iter().map(|corners| (*corners, thing(*corners))).collect();
         measure(&each.positions, &told, &mut things);
+        shells.extend(shell(&each.positions, &told, &things));
         match texture {
             Some(_) => meshes.push(Mesh { id: PAINTED, colours: Vec::new(), ..each }),
             None => meshes.extend(by_thing(&each.positions, &told)),
@@ -76,7 +77,8 @@ fn painted(mesh: &Path, annotations: &Path, habitat_from_asset: DMat3) -> Result
     }
     let scene = Scene::new(meshes, materials, model.textures);
     let scene = scene.map_err(|error| FileError::new(mesh, error.to_string(), HM3D_HINT))?;
-    Ok(Semantics { scene: scene.with_filter(Filter::Nearest), by_colour, things, regions: Vec::new() })
+    let rooms = Rooms::of(&things, shells);
+    Ok(Semantics { scene: scene.with_filter(Filter::Nearest), by_colour, things, regions: Vec::new(), rooms })
 }
 
 fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Semantics, FileError> {
@@ -93,7 +95,7 @@ fn numbered(mesh: &Path, house: &Path, habitat_from_asset: DMat3) -> Result<Sema
     // Scans are seen only from inside, and the winding of their faces is not reliable.
     let material = Material { double_sided: true, ..Material::default() };
     let scene = Scene::new(meshes, vec![material], Vec::new()).map_err(|error| wrong(error.to_string()))?;
-    Ok(Semantics { scene, by_colour: BTreeMap::new(), things, regions })
+    Ok(Semantics { scene, by_colour: BTreeMap::new(), things, regions, rooms: Rooms::default() })
 }
 
 /// A triangle and the thing that it belongs to.
@@ -107,6 +109,14 @@ fn measure(positions: &[Vec3], told: &[Told], things: &mut [Thing]) {
             places.for_each(|place| thing.include(place.as_dvec3()));
         }
     }
+}
+
+/// The triangles of floors, stairs and ceilings of numbered rooms, each with the index of its thing.
+fn shell(positions: &[Vec3], told: &[Told], things: &[Thing]) -> Vec<([Vec3; 3], u32)> {
+    let place = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
+    let tells = |thing: usize| things.get(thing).is_some_and(|thing| thing.part.is_some() && thing.room.is_some());
+    let told = told.iter().filter_map(|(corners, thing)| Some((corners, (*thing)?)));
+    told.filter(|(_, thing)| tells(*thing)).map(|(corners, thing)| (corners.map(place), thing as u32)).collect()
 }
 
 /// One mesh for each thing. Its id is the thing's index plus 1; for triangles without a thing it is 0.

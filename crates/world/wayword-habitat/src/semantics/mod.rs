@@ -5,13 +5,15 @@ mod house;
 mod labels;
 mod load;
 mod ply;
+mod rooms;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use load::{SemanticFiles, load};
 
+use rooms::{Part, Rooms};
 use std::collections::BTreeMap;
-use wayword_core::{DVec3, ObjectId};
+use wayword_core::{DVec3, Heading, ObjectId};
 use wayword_render::{Camera, Picture, RenderError, Scene, render, render_ids};
 use wayword_world::{object_names, region};
 
@@ -23,12 +25,18 @@ pub(crate) struct Thing {
     pub(crate) name: Option<String>,
     /// The box around its triangles, metres; `None` if it has no triangles.
     bounds: Option<(DVec3, DVec3)>,
+    /// The number of its room, where rooms are numbered and not named.
+    room: Option<u32>,
+    /// What it tells of where its room is.
+    part: Option<Part>,
 }
 
 impl Thing {
     fn new(id: ObjectId, raw: &str) -> Self {
-        let name = object_names::plain(raw).filter(|name| object_names::is_furnishing(name));
-        Self { id, name, bounds: None }
+        let plain = object_names::plain(raw);
+        let part = plain.as_deref().and_then(rooms::part);
+        let name = plain.filter(|name| object_names::is_furnishing(name));
+        Self { id, name, bounds: None, room: None, part }
     }
 
     fn include(&mut self, place: DVec3) {
@@ -53,6 +61,8 @@ pub(crate) struct Semantics {
     by_colour: BTreeMap<[u8; 3], usize>,
     things: Vec<Thing>,
     regions: Vec<Region>,
+    /// The rooms, where they are numbered.
+    rooms: Rooms,
 }
 
 impl Semantics {
@@ -78,11 +88,14 @@ impl Semantics {
         self.things.iter().find(|thing| thing.id == *object)
     }
 
-    /// The word for the room in which a place lies; of several boxes around the place, the smallest counts.
-    pub(crate) fn room(&self, place: DVec3) -> Option<&'static str> {
-        let holds = |region: &&Region| region.low.cmple(place).all() && region.high.cmpge(place).all();
+    /// The word for the room that an eye sees: of several boxes around it the smallest counts. Where rooms are only
+    /// numbered, it is the word that the things in the room suggest, and in an opening that of the room ahead.
+    pub(crate) fn room(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
+        let holds = |region: &&Region| region.low.cmple(eye).all() && region.high.cmpge(eye).all();
         let size = |region: &Region| (region.high - region.low).element_product();
-        let inside = self.regions.iter().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b)))?;
-        region::room(inside.letter)
+        match self.regions.iter().filter(holds).min_by(|a, b| size(a).total_cmp(&size(b))) {
+            Some(inside) => region::room(inside.letter),
+            None => self.rooms.seen(eye, heading),
+        }
     }
 }

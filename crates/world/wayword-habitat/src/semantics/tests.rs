@@ -141,7 +141,7 @@ fn labels_are_what_the_pixels_show_however_the_mesh_is_painted() {
     for mesh in [by_vertices(), by_texture()] {
         let semantics = semantics(("x.semantic.glb", &mesh), ("x.semantic.txt", ANNOTATIONS));
         assert_eq!(seen(&semantics), two(("1", "sofa"), ("2", "lamp")));
-        assert_eq!(semantics.room(DVec3::ZERO), None);
+        assert_eq!(semantics.room(DVec3::ZERO, Heading::NORTH), None);
     }
 }
 
@@ -149,8 +149,8 @@ fn labels_are_what_the_pixels_show_however_the_mesh_is_painted() {
 fn numbered_faces_have_the_names_of_their_house() {
     let semantics = semantics(("x_semantic.ply", &by_numbers()), ("x.house", HOUSE));
     assert_eq!(seen(&semantics), two(("0", "sofa"), ("1", "lamp")));
-    assert_eq!(semantics.room(DVec3::new(0.0, 0.0, 1.5)), Some("bedroom"));
-    assert_eq!(semantics.room(DVec3::new(5.0, 0.0, 1.5)), Some("living room"));
+    assert_eq!(semantics.room(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH), Some("bedroom"));
+    assert_eq!(semantics.room(DVec3::new(5.0, 0.0, 1.5), Heading::NORTH), Some("living room"));
     let lamp = semantics.named(&ObjectId::new("1").unwrap()).unwrap();
     assert_eq!(lamp.bounds, Some((DVec3::new(0.2_f32.into(), 3.0, 0.5), DVec3::new(1.5, 3.0, 2.5))));
 }

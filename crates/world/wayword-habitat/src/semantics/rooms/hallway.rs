@@ -1,0 +1,89 @@
+//! Hallways have few things in them that name them, but a shape: narrow, long, and with doors to several rooms.
+
+use super::{super::Thing, LEVEL_M, Part, Rooms};
+use std::collections::BTreeMap;
+use wayword_core::DVec3;
+
+pub(super) const NAME: &str = "hallway";
+
+/// Broadest that a hallway is, metres.
+const BROAD_M: f64 = 2.2;
+/// Shortest that it is, metres.
+const LONG_M: f64 = 3.0;
+/// Longest that it is, metres; more is no single hallway, and would take long to look through.
+const LONGEST_M: f64 = 40.0;
+/// How often it is as long as it is broad.
+const LONGER: f64 = 2.0;
+/// Fewest rooms to which it leads.
+const ROOMS: usize = 3;
+/// Width of a door or doorway, metres.
+const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
+/// If floors touch along more than this, a room goes on in another, metres: its number stands for a part of a room.
+const OPEN_M: f64 = 2.6;
+/// Most rooms that are looked at, and most triangles near one place: real scenes have fewer, and more would take long.
+const MOST_ROOMS: usize = 64;
+const MOST_NEAR: usize = 1000;
+/// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
+const STEP_M: f64 = 0.05;
+
+impl Rooms {
+    /// The hallways among rooms in which nothing speaks for another name.
+    pub(super) fn hallways(&self, silent: &[u32], things: &[Thing]) -> Vec<u32> {
+        if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MOST_NEAR) {
+            return Vec::new();
+        }
+        let looked_at = silent.iter().copied().take(MOST_ROOMS);
+        looked_at.filter(|room| self.is_hallway(*room, things)).collect()
+    }
+
+    /// Whether it is a hallway: its floor is narrow and long, it has a
+    /// ceiling, and it leads to three rooms or more, of which one is a bathroom or has stairs. A balcony has none of these
+    /// last.
+    fn is_hallway(&self, room: u32, things: &[Thing]) -> bool {
+        let bounds = |part: Part| {
+            let of_room = things.iter().filter(|thing| thing.room == Some(room) && thing.part == Some(part));
+            of_room.filter_map(|thing| thing.bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        };
+        let (Some((low, high)), Some(_)) = (bounds(Part::Floor), bounds(Part::Ceiling)) else { return false };
+        let size = high - low;
+        let (broad_m, long_m) = (size.x.min(size.y), size.x.max(size.y));
+        let is_long = (LONG_M..=LONGEST_M).contains(&long_m) && long_m >= LONGER * broad_m;
+        broad_m <= BROAD_M && is_long && size.z <= LEVEL_M && self.leads_on(room, low, high)
+    }
+
+    fn leads_on(&self, room: u32, low: DVec3, high: DVec3) -> bool {
+        let touching_m = self.touching_m(room, low, high);
+        let is_door = |(_, metres): &(&u32, &f64)| DOOR_M.contains(metres);
+        let doors: Vec<u32> = touching_m.iter().filter(is_door).map(|(other, _)| *other).collect();
+        let has_stairs = |room: &u32| self.owners.iter().flatten().any(|owner| *owner == (*room, Part::Stairs));
+        let is_indoors = |room: &u32| self.names.get(room) == Some(&"bathroom") || has_stairs(room);
+        doors.len() >= ROOMS && doors.iter().any(is_indoors) && touching_m.values().all(|metres| *metres <= OPEN_M)
+    }
+
+    /// Along how many metres the floors of other rooms touch a room's floor.
+    fn touching_m(&self, room: u32, low: DVec3, high: DVec3) -> BTreeMap<u32, f64> {
+        let count = |from: f64, to: f64| ((to - from) / STEP_M) as usize + 4;
+        let at = |column: usize, row: usize| {
+            let place = DVec3::new(low.x + (column as f64 - 1.5) * STEP_M, low.y + (row as f64 - 1.5) * STEP_M, 0.0);
+            self.below(place.with_z(high.z + LEVEL_M / 2.0), LEVEL_M + (high.z - low.z)).map(|surface| surface.room)
+        };
+        let (columns, rows) = (count(low.x, high.x), count(low.y, high.y));
+        let mut touching_m = BTreeMap::new();
+        let mut meet = |one: Option<u32>, other: Option<u32>| {
+            if let (Some(one), Some(other)) = (one, other)
+                && one != other
+                && (one == room || other == room)
+            {
+                *touching_m.entry(if one == room { other } else { one }).or_insert(0.0) += STEP_M;
+            }
+        };
+        let mut before: Vec<Option<u32>> = vec![None; columns];
+        for row in 0..rows {
+            let line: Vec<Option<u32>> = (0..columns).map(|column| at(column, row)).collect();
+            line.windows(2).for_each(|pair| meet(pair[0], pair[1]));
+            line.iter().zip(&before).for_each(|(one, other)| meet(*one, *other));
+            before = line;
+        }
+        touching_m
+    }
+}

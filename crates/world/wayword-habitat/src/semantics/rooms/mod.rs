@@ -1,0 +1,159 @@
+//! Rooms that are numbered and not named, as in HM3D: where each is, and the name that the things in it suggest.
+//!
+//! Every thing carries the number of its room, and so do floors, stairs and ceilings. So the floor under an eye says in
+//! which room it is. No name comes from the dataset: it follows from labels by the rules of `rooms.txt`, and is left out
+//! where they are not sure.
+
+mod hallway;
+#[cfg(test)]
+mod houses;
+mod rules;
+
+pub(super) use rules::part;
+
+use super::Thing;
+use crate::columns::Columns;
+use glam::Vec3;
+use rules::{Verdict, verdict};
+use std::collections::BTreeMap;
+use wayword_core::{DVec3, Heading};
+
+/// Farthest that the floor is looked for under an eye, metres.
+const UNDER_M: f64 = 3.0;
+/// Farthest that a ceiling is looked for over an eye, metres.
+const OVER_M: f64 = 4.0;
+/// How far around an eye the floor is looked for where its mesh has a hole, metres.
+const AROUND_M: [f64; 3] = [0.15, 0.3, 0.45];
+/// An eye nearer than this to another room, ahead or behind, stands in the opening between them, metres.
+const THRESHOLD_M: f64 = 0.25;
+/// An eye nearer than this to another room at its side stands in the wall's opening and sees the jamb, metres: nobody
+/// stands so near to a wall.
+const ASIDE_M: f64 = 0.15;
+/// How far ahead the room is that an eye in an opening sees, metres.
+const AHEAD_M: f64 = 0.5;
+/// Distance of two places at which the floor is looked up, metres: less than the thickness of a wall, under which there
+/// is no floor.
+const STEP_M: f64 = 0.05;
+/// A floor that is higher or lower than this next to a place is another storey's, metres.
+const LEVEL_M: f64 = 0.4;
+
+/// What a surface tells of where its room is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    Floor,
+    Stairs,
+    Ceiling,
+}
+
+/// The rooms of a scene.
+#[derive(Debug, Default)]
+pub(super) struct Rooms {
+    /// The floors, stairs and ceilings. `None` if there are none.
+    shell: Option<Columns>,
+    /// The room of each thing that is a part of the shell.
+    owners: Vec<Option<(u32, Part)>>,
+    names: BTreeMap<u32, &'static str>,
+}
+
+/// A surface of a room at some place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Surface {
+    room: u32,
+    part: Part,
+    height_m: f64,
+}
+
+impl Rooms {
+    /// The rooms of things, with the triangles of their floors, stairs and ceilings and the index of each one's thing.
+    pub(super) fn of(things: &[Thing], shell: Vec<([Vec3; 3], u32)>) -> Self {
+        let mut inside: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
+        // What has no triangles is nowhere.
+        for thing in things.iter().filter(|thing| thing.bounds.is_some()) {
+            if let Some(room) = thing.room {
+                let ceiling = (thing.part == Some(Part::Ceiling)).then_some("ceiling");
+                inside.entry(room).or_default().extend(thing.name.as_deref().or(ceiling));
+            }
+        }
+        let verdicts = inside.into_iter().map(|(room, names)| (room, verdict(names.into_iter())));
+        let (mut names, mut silent) = (BTreeMap::new(), Vec::new());
+        for (room, verdict) in verdicts {
+            match verdict {
+                Verdict::Named(name) => drop(names.insert(room, name)),
+                Verdict::Silent => silent.push(room),
+                Verdict::Doubtful => {}
+            }
+        }
+        let owners = things.iter().map(|thing| thing.room.zip(thing.part)).collect();
+        let shell = (!shell.is_empty()).then(|| Columns::tagged(shell.into_iter()));
+        let mut rooms = Self { shell, owners, names };
+        let halls = rooms.hallways(&silent, things);
+        rooms.names.extend(halls.into_iter().map(|room| (room, hallway::NAME)));
+        rooms
+    }
+
+    /// The name of the room that an eye sees: the one it is in, or in an opening the one ahead. In an opening along whose
+    /// wall it looks, it is between two rooms and sees neither.
+    pub(super) fn seen(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
+        let Some(here) = self.below(eye, UNDER_M) else { return self.name(self.near(eye)?) };
+        let (sin, cos) = libm::sincos(heading.rad());
+        let (ahead, aside) = (DVec3::new(sin, cos, 0.0), DVec3::new(cos, -sin, 0.0));
+        let is_edge = |way: DVec3, far_m: f64| self.walk(here, eye, way, far_m).any(|at| at.room != here.room);
+        if is_edge(ahead, THRESHOLD_M) || is_edge(-ahead, THRESHOLD_M) {
+            return self.name(self.walk(here, eye, ahead, AHEAD_M).last().unwrap_or(here));
+        }
+        let is_between = is_edge(aside, ASIDE_M) || is_edge(-aside, ASIDE_M);
+        (!is_between).then(|| self.name(here)).flatten()
+    }
+
+    /// On stairs that lie in a room without a name, one is on the stairs.
+    fn name(&self, surface: Surface) -> Option<&'static str> {
+        let stairs = (surface.part == Part::Stairs).then_some("stairs");
+        self.names.get(&surface.room).copied().or(stairs)
+    }
+
+    /// The floor from place to place along a way, as far as it goes on without a gap or a ledge.
+    fn walk(&self, from: Surface, eye: DVec3, way: DVec3, far_m: f64) -> impl Iterator<Item = Surface> {
+        let mut height_m = from.height_m;
+        let steps = (1..).map(|step| f64::from(step) * STEP_M).take_while(move |at_m| *at_m <= far_m + 1e-9);
+        steps.map_while(move |at_m| {
+            let place = eye + way * at_m;
+            let next = self.below(DVec3::new(place.x, place.y, height_m + LEVEL_M), 2.0 * LEVEL_M)?;
+            height_m = next.height_m;
+            Some(next)
+        })
+    }
+
+    /// The room of an eye under which the mesh has a hole: that of the floor beside it, or else of the ceiling.
+    fn near(&self, eye: DVec3) -> Option<Surface> {
+        let beside = AROUND_M.into_iter().flat_map(|far_m| {
+            let turns = (0..8).map(|turn| libm::sincos(f64::from(turn) * std::f64::consts::FRAC_PI_4));
+            turns.map(move |(sin, cos)| eye + DVec3::new(sin, cos, 0.0) * far_m)
+        });
+        beside.filter_map(|place| self.below(place, UNDER_M)).next().or_else(|| self.ceiling(eye))
+    }
+
+    /// The highest floor or stair under a place.
+    fn below(&self, place: DVec3, far_m: f64) -> Option<Surface> {
+        let floors = self.surfaces(place).filter(|surface| surface.part != Part::Ceiling);
+        let under = floors.filter(|surface| (place.z - far_m..=place.z).contains(&surface.height_m));
+        under.max_by(|a, b| a.height_m.total_cmp(&b.height_m))
+    }
+
+    /// The lowest ceiling over a place.
+    fn ceiling(&self, place: DVec3) -> Option<Surface> {
+        let ceilings = self.surfaces(place).filter(|surface| surface.part == Part::Ceiling);
+        let over = ceilings.filter(|surface| (place.z..=place.z + OVER_M).contains(&surface.height_m));
+        over.min_by(|a, b| a.height_m.total_cmp(&b.height_m))
+    }
+
+    fn surfaces(&self, place: DVec3) -> impl Iterator<Item = Surface> {
+        let met = self.shell.iter().flat_map(move |shell| shell.tags_at(place));
+        met.filter_map(|(height_m, thing)| {
+            let (room, part) = (*self.owners.get(thing as usize)?)?;
+            Some(Surface { room, part, height_m })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

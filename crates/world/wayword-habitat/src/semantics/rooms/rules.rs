@@ -1,0 +1,186 @@
+//! What the things in a room say of its name, by the rules of `rooms.txt`.
+
+use super::Part;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::LazyLock,
+};
+
+const LIST: &str = include_str!("rooms.txt");
+
+static RULES: LazyLock<Rules> = LazyLock::new(|| Rules::parse(LIST));
+
+/// What the things in a room say of its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It has this name.
+    Named(&'static str),
+    /// They speak for different rooms, or not clearly enough for one.
+    Doubtful,
+    /// They say nothing.
+    Silent,
+}
+
+/// What a surface with this plain name tells of where its room is.
+pub(in super::super) fn part(plain: &str) -> Option<Part> {
+    RULES.parts.get(plain).copied()
+}
+
+/// The verdict of things with these plain names.
+pub(super) fn verdict<'a>(names: impl Iterator<Item = &'a str>) -> Verdict {
+    RULES.verdict(&names.collect())
+}
+
+#[derive(Debug, Default)]
+struct Rules {
+    parts: BTreeMap<&'static str, Part>,
+    /// The word that the rules use for each name that has another.
+    same: BTreeMap<&'static str, &'static str>,
+    rooms: Vec<Rule>,
+    /// Lines that are not understood; a test sees to it that there are none.
+    odd: Vec<&'static str>,
+}
+
+#[derive(Debug)]
+struct Rule {
+    room: &'static str,
+    /// Each decides if all its things are there.
+    decides: Vec<Vec<&'static str>>,
+    speaks: Vec<&'static str>,
+    /// Rooms whose things may lie in it too.
+    also: Vec<&'static str>,
+}
+
+/// The entries of a list with commas.
+fn entries(list: &'static str) -> impl Iterator<Item = &'static str> {
+    list.split(',').map(str::trim).filter(|entry| !entry.is_empty())
+}
+
+impl Rules {
+    fn parse(list: &'static str) -> Self {
+        let mut rules = Self::default();
+        for line in list.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
+            let mut tells = |part: Part, names| rules.parts.extend(entries(names).map(|name| (name, part)));
+            match line.split_once(':') {
+                Some(("floors", names)) => tells(Part::Floor, names),
+                Some(("stairs", names)) => tells(Part::Stairs, names),
+                Some(("ceilings", names)) => tells(Part::Ceiling, names),
+                Some(("same", names)) => {
+                    let first = entries(names).next().unwrap_or_default();
+                    rules.same.extend(entries(names).skip(1).map(|name| (name, first)));
+                }
+                Some(("room", columns)) => match columns.split('|').collect::<Vec<_>>()[..] {
+                    [room, decides, speaks, also] => rules.rooms.push(Rule {
+                        room: room.trim(),
+                        decides: entries(decides).map(|all| all.split('+').map(str::trim).collect()).collect(),
+                        speaks: entries(speaks).collect(),
+                        also: entries(also).collect(),
+                    }),
+                    _ => rules.odd.push(line),
+                },
+                _ => rules.odd.push(line),
+            }
+        }
+        rules
+    }
+
+    fn verdict(&self, names: &BTreeSet<&str>) -> Verdict {
+        let names: BTreeSet<&str> = names.iter().map(|name| self.same.get(name).copied().unwrap_or(name)).collect();
+        let decides = |rule: &&Rule| rule.decides.iter().any(|all| all.iter().all(|thing| names.contains(thing)));
+        let speaks = |rule: &&Rule| decides(rule) || rule.speaks.iter().any(|thing| names.contains(thing));
+        let spoken_for: Vec<&Rule> = self.rooms.iter().filter(speaks).collect();
+        if spoken_for.is_empty() {
+            return Verdict::Silent;
+        }
+        let is_free =
+            |rule: &&Rule| spoken_for.iter().all(|other| other.room == rule.room || rule.also.contains(&other.room));
+        let mut sure = spoken_for.iter().copied().filter(decides).filter(is_free);
+        match (sure.next(), sure.next()) {
+            (Some(rule), None) => Verdict::Named(rule.room),
+            _ => Verdict::Doubtful,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_world::{object_names::plain, region};
+
+    /// The verdict of things as the annotators write them, by commas.
+    fn told(things: &str) -> Verdict {
+        let plain: Vec<String> = things.split(',').filter_map(plain).collect();
+        verdict(plain.iter().map(String::as_str))
+    }
+
+    #[test]
+    fn every_line_is_understood_and_names_a_room_that_other_scenes_have_too() {
+        assert_eq!(RULES.odd, [""; 0]);
+        let known: BTreeSet<&str> = ('a'..='z').chain('A'..='Z').filter_map(region::room).collect();
+        for rule in &RULES.rooms {
+            assert!(known.contains(rule.room), "{}", rule.room);
+            for other in &rule.also {
+                assert!(RULES.rooms.iter().any(|rule| rule.room == *other), "{other} has no line");
+            }
+            // A thing that is another's second name would never be found.
+            for thing in rule.decides.iter().flatten().chain(&rule.speaks) {
+                assert!(!RULES.same.contains_key(thing), "{thing} is another name of {}", RULES.same[thing]);
+            }
+        }
+    }
+
+    #[test]
+    fn what_lies_in_a_room_names_it() {
+        for (things, room) in [
+            ("bed, nightstand, tv", "bedroom"),
+            ("king bed, desk, desk chair, couch, tv", "bedroom"),
+            ("toilet seat, sink, mirror", "bathroom"),
+            ("bath tub, washing machine", "bathroom"),
+            ("shower cabin", "bathroom"),
+            ("oven and stove, dining table", "kitchen"),
+            ("kitchen cabinet, refrigerator, sink", "kitchen"),
+            ("stove, sink", "kitchen"),
+            ("dining table, dining chair, ceiling", "dining room"),
+            ("couch, coffee table, ceiling", "living room"),
+            ("sofa, flatscreen tv, plant", "living room"),
+            ("desk, office chair, bookshelf", "office"),
+            ("computer desk, computer monitor", "office"),
+            ("washer-dryer, clothes rack", "laundry room"),
+            ("treadmill, mirror, ceiling", "gym"),
+            ("billiard table, couch, tv", "game room"),
+            ("car, bicycle, ceiling", "garage"),
+            ("front door, shoe rack", "entryway"),
+            ("clothes rack, cardboard boxes", "closet"),
+        ] {
+            assert_eq!(told(things), Verdict::Named(room), "{things}");
+        }
+    }
+
+    #[test]
+    fn what_speaks_for_two_rooms_names_none() {
+        for things in [
+            "bed, stove",
+            "bed, dining table",
+            "bed, toilet",
+            "sofa, tv, dining table",
+            "sofa, tv, kitchen counter",
+            "sofa, tv, desk, office chair",
+            "toilet, refrigerator",
+            "treadmill, sofa, tv",
+            "clothes rack, toilet, bed",
+        ] {
+            assert_eq!(told(things), Verdict::Doubtful, "{things}");
+        }
+    }
+
+    #[test]
+    fn what_stands_anywhere_names_nothing() {
+        for things in ["", "chair, picture, lamp", "sink, mirror", "desk", "toilet paper, bed sheet", "unknown, wall"] {
+            assert_eq!(told(things), Verdict::Silent, "{things}");
+        }
+        // These speak for a room, but not alone.
+        for things in ["refrigerator", "couch, coffee table", "kitchen cabinet, sink", "door mat"] {
+            assert_eq!(told(things), Verdict::Doubtful, "{things}");
+        }
+    }
+}

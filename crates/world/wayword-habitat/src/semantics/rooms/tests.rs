@@ -1,0 +1,117 @@
+//! Made-up rooms: floors and things, and where which room is.
+
+use super::*;
+use wayword_core::ObjectId;
+
+/// A thing of a room with a level rectangle at a height: x from, x to, y from, y to.
+fn thing(number: usize, raw: &str, room: u32, [x0, x1, y0, y1]: [f64; 4], height_m: f64) -> Thing {
+    let mut thing = Thing { room: Some(room), ..Thing::new(ObjectId::new(number.to_string()).unwrap(), raw) };
+    thing.include(DVec3::new(x0, y0, height_m));
+    thing.include(DVec3::new(x1, y1, height_m));
+    thing
+}
+
+fn rooms(given: &[(&str, u32, [f64; 4], f64)]) -> Rooms {
+    let numbered = given.iter().enumerate();
+    let things: Vec<Thing> = numbered.map(|(at, (raw, room, area, z))| thing(at, raw, *room, *area, *z)).collect();
+    let mut shell = Vec::new();
+    for (at, (_, _, [x0, x1, y0, y1], z)) in given.iter().enumerate().filter(|(at, _)| things[*at].part.is_some()) {
+        let corner = |x: f64, y: f64| DVec3::new(x, y, *z).as_vec3();
+        let [a, b, c, d] = [corner(*x0, *y0), corner(*x1, *y0), corner(*x1, *y1), corner(*x0, *y1)];
+        shell.extend([([a, b, c], at as u32), ([a, c, d], at as u32)]);
+    }
+    Rooms::of(&things, shell)
+}
+
+fn seen(rooms: &Rooms, x: f64, y: f64, turn_rad: f64) -> Option<&'static str> {
+    rooms.seen(DVec3::new(x, y, 1.5), Heading::new(turn_rad).unwrap())
+}
+
+const EAST: f64 = std::f64::consts::FRAC_PI_2;
+const WEST: f64 = 3.0 * EAST;
+
+/// A bedroom west of a bathroom, with a wall of 12 cm between them and a doorway in it, whose sill is the bedroom's.
+fn two_rooms() -> Vec<(&'static str, u32, [f64; 4], f64)> {
+    vec![
+        ("floor", 1, [0.0, 3.94, 0.0, 4.0], 0.0),
+        ("floor", 1, [3.94, 4.06, 1.5, 2.5], 0.0),
+        ("floor", 2, [4.06, 7.0, 0.0, 4.0], 0.0),
+        ("bed", 1, [1.0, 3.0, 3.0, 4.0], 0.5),
+        ("toilet#seat", 2, [6.0, 6.5, 3.0, 3.5], 0.4),
+    ]
+}
+
+#[test]
+fn the_floor_says_in_which_room_an_eye_is() {
+    let rooms = rooms(&two_rooms());
+    assert_eq!(seen(&rooms, 1.0, 1.0, EAST), Some("bedroom"));
+    assert_eq!(seen(&rooms, 6.0, 1.0, EAST), Some("bathroom"));
+    // Nothing is known above another storey's ceiling, or far outside.
+    assert_eq!(rooms.seen(DVec3::new(1.0, 1.0, 4.5), Heading::NORTH), None);
+    assert_eq!(seen(&rooms, 20.0, 1.0, EAST), None);
+}
+
+#[test]
+fn in_an_opening_the_room_ahead_is_seen_and_never_one_behind_a_wall() {
+    let rooms = rooms(&two_rooms());
+    for x in [3.85, 4.0, 4.15] {
+        assert_eq!(seen(&rooms, x, 2.0, EAST), Some("bathroom"), "{x}");
+        assert_eq!(seen(&rooms, x, 2.0, WEST), Some("bedroom"), "{x}");
+    }
+    // Along the wall it sees neither.
+    assert_eq!(seen(&rooms, 4.0, 2.0, 0.0), None);
+    assert_eq!(seen(&rooms, 3.5, 2.0, 0.0), Some("bedroom"));
+    assert_eq!(seen(&rooms, 3.5, 2.0, EAST), Some("bedroom"));
+    assert_eq!(seen(&rooms, 3.85, 0.5, EAST), Some("bedroom"));
+}
+
+#[test]
+fn a_hole_in_the_floor_and_a_missing_floor_are_bridged() {
+    let hole = rooms(&[("floor", 1, [0.0, 1.0, 0.0, 4.0], 0.0), ("bed", 1, [0.0, 1.0, 0.0, 1.0], 0.5)]);
+    assert_eq!(seen(&hole, 1.2, 2.0, EAST), Some("bedroom"));
+    assert_eq!(seen(&hole, 2.2, 2.0, EAST), None);
+    let roofed = rooms(&[("ceiling", 1, [0.0, 4.0, 0.0, 4.0], 2.6), ("bed", 1, [0.0, 1.0, 0.0, 1.0], 0.5)]);
+    assert_eq!(seen(&roofed, 2.0, 2.0, EAST), Some("bedroom"));
+}
+
+#[test]
+fn stairs_are_stairs_unless_their_room_has_a_name() {
+    let stairs = ("stairs", 1, [0.0, 1.0, 0.0, 4.0], 0.3);
+    assert_eq!(seen(&rooms(&[stairs]), 0.5, 2.0, EAST), Some("stairs"));
+    let roof = ("ceiling", 1, [0.0, 4.0, 0.0, 4.0], 2.6);
+    let within =
+        [stairs, roof, ("couch", 1, [3.0, 4.0, 0.0, 1.0], 0.5), ("coffee table", 1, [3.0, 4.0, 1.5, 2.0], 0.4)];
+    assert_eq!(seen(&rooms(&within), 0.5, 2.0, EAST), Some("living room"));
+}
+
+/// A floor of 8 x 1.3 m with three rooms north of it, to which doors lead.
+fn hall(roof: &'static str, third: &'static str) -> Vec<(&'static str, u32, [f64; 4], f64)> {
+    let mut all = vec![("floor", 0, [0.0, 8.0, 0.0, 1.3], 0.0), (roof, 0, [0.0, 8.0, 0.0, 1.3], 2.6)];
+    all.push(("picture", 0, [1.0, 2.0, 0.0, 0.0], 1.5));
+    for (number, name) in [(1, "bed"), (2, "desk"), (3, third)] {
+        let x = f64::from(number) * 2.0;
+        all.push(("floor", number, [x, x + 1.88, 1.42, 5.0], 0.0));
+        all.push(("floor", number, [x + 0.5, x + 1.4, 1.3, 1.42], 0.0));
+        all.push((name, number, [x, x + 1.0, 4.0, 5.0], 0.5));
+    }
+    all
+}
+
+#[test]
+fn a_hallway_is_long_and_leads_to_rooms() {
+    assert_eq!(seen(&rooms(&hall("ceiling", "toilet")), 1.0, 0.6, EAST), Some("hallway"));
+    // A balcony has no ceiling, or no bathroom beside it.
+    assert_eq!(seen(&rooms(&hall("awning", "toilet")), 1.0, 0.6, EAST), None);
+    assert_eq!(seen(&rooms(&hall("ceiling", "chair")), 1.0, 0.6, EAST), None);
+    let mut two_doors = hall("ceiling", "toilet");
+    two_doors.remove(4);
+    assert_eq!(seen(&rooms(&two_doors), 1.0, 0.6, EAST), None);
+    // Things that speak for another room.
+    let mut doubtful = hall("ceiling", "toilet");
+    doubtful.push(("couch", 0, [0.0, 1.0, 0.0, 0.5], 0.5));
+    assert_eq!(seen(&rooms(&doubtful), 1.0, 0.6, EAST), None);
+    // No walls: the room goes on.
+    let mut open = hall("ceiling", "toilet");
+    open.push(("floor", 2, [0.0, 8.0, -2.0, 0.0], 0.0));
+    assert_eq!(seen(&rooms(&open), 1.0, 0.6, EAST), None);
+}
