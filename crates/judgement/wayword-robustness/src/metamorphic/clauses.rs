@@ -71,7 +71,7 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
             let before = told[..at].iter().rev().find_map(|told| told.range).map_or(0, |(_, last)| last);
             let behind = told[at + 1..].iter().find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
             let mut later = told[at + 1..].iter().filter(|told| told.speaks_of == Matter::Motion);
-            let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(first, _)| first);
+            let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(_, last)| last);
             let (first, last) = match told[at].range {
                 // A thing is mapped to the first frame that shows it, and may be reached only later.
                 Some((first, last)) if told[at].speaks_of == Matter::Thing => (first, last.max(fixed)),

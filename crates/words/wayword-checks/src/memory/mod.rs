@@ -50,7 +50,7 @@ impl Memory {
         let openings = openings::openings(&stays, evidence);
         Self {
             things: things::things(evidence, &eyes, &headings),
-            bends: ways::bends(&evidence.moves, &openings),
+            bends: ways::bends(&evidence.moves),
             flights: ways::flights(evidence),
             stays,
             openings,

@@ -1,6 +1,5 @@
 //! The rooms, bends and flights of a walk.
 
-use super::Opening;
 use crate::Evidence;
 use std::{cmp::Ordering, ops::Range};
 use wayword_core::{Climb, Move, Side, motion};
@@ -73,15 +72,17 @@ pub(super) fn stays(evidence: &Evidence) -> Vec<Stay> {
     stays
 }
 
-/// Moves between which a walker turns back and forth by less than this in all have no turn, degrees.
+/// Two turns to different sides are a way that winds where both are smaller than this, degrees,
+const WINDING_EACH_DEG: f64 = 40.0;
+/// what is left of them is smaller than this, degrees,
 const WINDING_DEG: f64 = motion::SLIGHT_DEG;
-/// As long as the way between them is shorter than this, metres.
+/// and the way between them is shorter than this, metres.
 const WINDING_M: f64 = 2.5;
 /// Several turns in a row are one bend up to this, degrees; beyond that they are turns of their own.
 const ONE_BEND_DEG: f64 = 135.0;
 
 /// The turns of a walk that are worth a word; the same ones on the way back.
-pub(super) fn bends(moves: &[Move], openings: &[Opening]) -> Vec<Bend> {
+pub(super) fn bends(moves: &[Move]) -> Vec<Bend> {
     let mut bends: Vec<Bend> = Vec::new();
     // The opening turn is a turn of its own: the walker does not walk before it.
     let mut at = 0;
@@ -90,7 +91,7 @@ pub(super) fn bends(moves: &[Move], openings: &[Opening]) -> Vec<Bend> {
         joined(moves, at..at + run, &mut bends);
         at += run;
     }
-    unwound(bends, moves, openings)
+    unwound(bends, moves)
 }
 
 fn turn_deg(moves: &[Move], at: usize) -> f64 {
@@ -130,19 +131,14 @@ fn joined(moves: &[Move], run: Range<usize>, bends: &mut Vec<Bend>) {
     joined(moves, part.end..run.end, bends);
 }
 
-/// The bends without those that the next one takes back at once in the same room: a way that winds. The nearest two go first.
-fn unwound(mut bends: Vec<Bend>, moves: &[Move], openings: &[Opening]) -> Vec<Bend> {
+/// The bends without those that the next one takes back at once: a way that winds. The nearest two go first. It goes by the turns
+/// alone, because one who stands in a door is in the room ahead, which is another one on the way back.
+fn unwound(mut bends: Vec<Bend>, moves: &[Move]) -> Vec<Bend> {
     let between_m = |pair: &[Bend]| moves[pair[0].last..pair[1].first].iter().map(|step| step.distance_m).sum::<f64>();
     let takes_back = |pair: &[Bend]| {
+        let small = pair.iter().all(|bend| bend.turn_rad.to_degrees().abs() < WINDING_EACH_DEG);
         let net_deg = (pair[0].turn_rad + pair[1].turn_rad).to_degrees().abs();
-        let both_slight = pair[0].is_slight() && pair[1].is_slight();
-        // One who stands in a door may be in either room.
-        let passes_a_door = |door: &Opening| door.before <= pair[1].first && door.behind >= pair[0].last;
-        pair[0].first > 0
-            && !openings.iter().any(passes_a_door)
-            && both_slight
-            && net_deg < WINDING_DEG
-            && between_m(pair) < WINDING_M
+        pair[0].first > 0 && small && net_deg < WINDING_DEG && between_m(pair) < WINDING_M
     };
     loop {
         let winding = bends.windows(2).enumerate().filter(|(_, pair)| takes_back(pair));

@@ -94,7 +94,7 @@ const LATER_SEARCH: f64 = 2.0;
 /// How much less it counts at a spot that stands in for another.
 const SPARE: f64 = 1.0;
 /// How much more a thing is worth where one stops.
-const AT_THE_END: f64 = 1.0;
+const AT_THE_END: f64 = 0.5;
 
 /// What a landmark is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -215,23 +215,38 @@ impl<'a> Lengths<'a> {
         Self { way, known: BTreeMap::new() }
     }
 
-    /// The words of a plan, of whose places for things a usual share has one.
-    pub(super) fn sum(&mut self, plan: &[Clause]) -> f64 {
-        plan.iter().map(|clause| self.expected(clause)).sum::<f64>() - JOINT_WORDS
+    /// The words of a plan of whose places for things such a share has one.
+    fn sum(&mut self, plan: &[Clause], with_a_thing: f64) -> f64 {
+        let all = plan.iter().map(|clause| {
+            let (with, without) = self.with_and_without(clause);
+            without + with_a_thing * (with - without)
+        });
+        all.sum::<f64>() - JOINT_WORDS
     }
 
-    fn expected(&mut self, clause: &Clause) -> f64 {
+    /// How many words a plan is expected to have.
+    pub(super) fn expected(&mut self, plan: &[Clause]) -> f64 {
+        self.sum(plan, WITH_A_THING)
+    }
+
+    /// How many words it has where each place has a thing.
+    pub(super) fn most(&mut self, plan: &[Clause]) -> f64 {
+        self.sum(plan, 1.0)
+    }
+
+    /// The words of a clause with its thing and without it.
+    fn with_and_without(&mut self, clause: &Clause) -> (f64, f64) {
         let own = self.words(clause.kind) + JOINT_WORDS;
-        let Some(offer) = &clause.offer else { return own };
-        let (with, without) = match offer.role {
-            Role::Turn => (self.words(Kind::TurnAt) + JOINT_WORDS, own),
-            Role::PassEnter => (self.words(Kind::PassEnter) + JOINT_WORDS, own),
-            Role::EnterWith => (self.words(Kind::EnterWith) + JOINT_WORDS, own),
-            Role::Stop(kind) => (self.words(kind) + JOINT_WORDS, own),
-            Role::Onward => (own + if offer.tells_side { SIDE_WORDS } else { 0.0 }, 0.0),
+        let Some(offer) = &clause.offer else { return (own, own) };
+        let with = match offer.role {
+            Role::Turn => self.words(Kind::TurnAt) + JOINT_WORDS,
+            Role::PassEnter => self.words(Kind::PassEnter) + JOINT_WORDS,
+            Role::EnterWith => self.words(Kind::EnterWith) + JOINT_WORDS,
+            Role::Stop(kind) => self.words(kind) + JOINT_WORDS,
+            Role::Onward => own + if offer.tells_side { SIDE_WORDS } else { 0.0 },
         };
-        let pair = if offer.pair { PAIR_WORDS } else { 0.0 };
-        without + WITH_A_THING * (with + pair - without)
+        let without = if clause.is_offer() { 0.0 } else { own };
+        (with + if offer.pair { PAIR_WORDS } else { 0.0 }, without)
     }
 
     fn words(&mut self, kind: Kind) -> f64 {

@@ -18,6 +18,8 @@ use wayword_language::text::word_count;
 
 /// A text may be longer or shorter than its style's by this, words.
 const SLACK: f64 = 2.0;
+/// Nor longer than so many times these words where many things are seen.
+const MOST: f64 = 1.25;
 /// A way is planned so often until a text copies nothing from the style's references.
 const PLANS: usize = 8;
 /// And words that are copied are replaced so often.
@@ -76,9 +78,14 @@ impl Plan {
             fill::offer_places(&mut clauses, brief, dice);
         }
         let mut lengths = Lengths::of(&brief.profile.way);
-        while lengths.sum(&clauses) > words as f64 + SLACK && drop_least(&mut clauses, OPTIONAL) {}
+        let words = words as f64;
+        let mut is_long =
+            |plan: &[Clause]| lengths.expected(plan) > words + SLACK || lengths.most(plan) > words * MOST + SLACK;
+        while is_long(&clauses) && drop_least(&mut clauses, OPTIONAL) {}
+        let mut is_short =
+            |plan: &[Clause]| lengths.expected(plan) < words - SLACK && lengths.most(plan) < words * MOST;
         let mut times = 0;
-        while lengths.sum(&clauses) < words as f64 - SLACK && !stands_still(brief.walk) {
+        while is_short(&clauses) && !stands_still(brief.walk) {
             if !fill::fill(&mut clauses, brief, dice.other(times)) {
                 break;
             }

@@ -1,7 +1,7 @@
 //! More to say of a way that is told in fewer words than the texts of its style. It goes by the way alone, too.
 
 use super::{
-    Clause, FILLER, Offer, Role, SIDE,
+    Clause, FILLER, MAIN, Offer, Role, SIDE,
     offer::{Things, free_hops, insert},
     usable_room,
 };
@@ -74,7 +74,7 @@ pub(in crate::writer) fn fill(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice
     false
 }
 
-/// Has a text offer places for things on the way, where almost anything will do.
+/// Has a text offer places for things on the way, where almost anything will do. They stay however long it is.
 pub(in crate::writer) fn offer_places(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice: Dice) {
     let offers = |clauses: &[Clause]| clauses.iter().rev().skip(1).filter(|clause| clause.offer.is_some()).count();
     let mut times = 0;
@@ -83,6 +83,9 @@ pub(in crate::writer) fn offer_places(clauses: &mut Vec<Clause>, brief: &Brief<'
             break;
         }
         times += 1;
+    }
+    for clause in clauses.iter_mut().rev().skip(1).filter(|clause| clause.offer.is_some()).take(LEAST_OFFERS) {
+        clause.weight = clause.weight.max(MAIN);
     }
     for offer in clauses.iter_mut().filter_map(|clause| clause.offer.as_mut()) {
         offer.things = Things::Any;
