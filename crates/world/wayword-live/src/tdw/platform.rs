@@ -6,7 +6,7 @@ use super::{
     scenes::{self, Plan},
     session,
 };
-use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey};
+use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey, Wanted};
 use std::path::PathBuf;
 use wayword_core::{DVec3, Failure, SceneId};
 use wayword_render::Camera;
@@ -127,7 +127,8 @@ impl Simulator for Tdw {
         Ok(survey)
     }
 
-    fn shoot(&mut self, camera: &Camera) -> Result<Shot, TdwError> {
+    /// The build sends all passes of its camera.
+    fn shoot(&mut self, camera: &Camera, _: Wanted) -> Result<Shot, TdwError> {
         session::shoot(&mut self.controller, camera)
     }
 

@@ -65,7 +65,7 @@ pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
     let eyes = eyes(controller, &raster.places())?;
     let graph = raster.graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
     // The build's regions have boxes, but no names.
-    Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new() })
+    Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new(), thresholds: Vec::new() })
 }
 
 fn raster(map: &Occupancy) -> Option<Raster> {
@@ -161,7 +161,7 @@ pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot
         pictures::rgb(pass.ok_or_else(missing)?, kind, size)
     };
     let ids = pixels(PassKind::Id)?.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect();
-    Ok(Shot { rgb: pixels(PassKind::Img)?, ids })
+    Ok(Shot { rgb: Some(pixels(PassKind::Img)?), ids })
 }
 
 fn vector(place: DVec3) -> Vector3 {
