@@ -13,10 +13,10 @@ use std::{
 use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, SceneId};
 use wayword_house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
 use wayword_live::{
-    Pictures,
+    Houses, Pictures,
     tdw::{
         ControllerOptions, TdwOptions, TdwPlatform,
-        stand_in::{StandIn, StandInOptions},
+        stand_in::{Furnished, StandIn, StandInOptions},
     },
 };
 
@@ -132,6 +132,25 @@ fn labels_are_those_of_the_built_in_platform() {
     assert!(labels > 10, "{labels}");
 }
 
+/// Each house is the floor plan of its place, with labels of its furniture alone.
+#[test]
+fn several_houses_are_floor_plans_of_their_own() {
+    let houses = Houses::with_one_storey(5, 3);
+    let shown = StandIn::scenes(&houses).unwrap();
+    let (platform, _build) = start(StandInOptions { houses, furnished: Furnished::Always, ..Default::default() });
+    for shown in shown.iter().chain(shown.iter().rev()) {
+        let scene = SceneId::new(shown.scene.clone()).unwrap();
+        let graph = platform.graph(&scene).unwrap();
+        let frame = graph.walk(&[graph.viewpoints().next().unwrap().clone()], None).unwrap().remove(0);
+        let house = HouseScene::new(generate(shown.seed)).unwrap();
+        for (id, object) in &house.objects {
+            let told = platform.object_name(&scene, &frame, &ObjectId::new(id.to_string()).unwrap()).unwrap();
+            let expected = (object.role == Role::Furniture).then_some(object.name.as_str());
+            assert_eq!(told.as_deref(), expected, "{shown}");
+        }
+    }
+}
+
 #[test]
 fn a_lost_build_costs_a_path_nothing() {
     let request = PathRequest { length_m: 4.0..=16.0, ..PathRequest::default() };
@@ -193,7 +212,7 @@ fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::Groun
 fn a_plan_without_furniture_has_no_labels_and_says_how_it_is_furnished() {
     let folder = tempfile::tempdir().unwrap();
     package(folder.path());
-    let honest = StandInOptions { furnishes: false, ..StandInOptions::default() };
+    let honest = StandInOptions { furnished: Furnished::OnceAdded, ..StandInOptions::default() };
     let (platform, _build) = start_with(honest, Some(folder.path().to_owned()));
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hearing = heard.clone();
