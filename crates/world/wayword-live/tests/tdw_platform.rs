@@ -98,6 +98,8 @@ fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
         let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
         assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
         let truth = view.ground_truth().unwrap();
+        let without = platform.look_without_picture(&scene(), &frame, gaze).unwrap();
+        assert!(without.image.is_none() && without.ground_truth() == Some(truth), "labels need no picture");
         assert!(truth.lists_objects);
         for label in &truth.labels {
             let object = &drawn.objects[&label.object.as_str().parse::<u32>().unwrap()];

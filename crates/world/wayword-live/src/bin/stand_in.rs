@@ -3,6 +3,8 @@
 //! `cargo run --release -p wayword-live --features stand-in -- virtualhome 8080 --houses 1,4` listens on that port like
 //! VirtualHome's executable; `... -- tdw 1071 --first 12` connects to a controller on that port like TDW's build.
 
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program talks to whoever started it")]
+
 use std::{env, error::Error, fs, net::SocketAddr, path::PathBuf, process::ExitCode, thread::park};
 use wayword_live::{Houses, ShownAs, tdw, virtualhome};
 
