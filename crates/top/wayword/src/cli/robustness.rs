@@ -45,8 +45,8 @@ pub struct Robustness {
     #[arg(long, value_name = "EYE")]
     pub eye: Option<String>,
     /// The name that another platform has for a scene of the run, for `--change platform=`: SCENE=NAME, or @FILE with one such
-    /// line for each scene. Give the flag several times. A scene may have several names: each platform takes the first that
-    /// it has. [default: the same name]
+    /// line for each scene. Give the flag several times. A scene may have several names: on each platform the first counts
+    /// that is there, and after these the scene's own name.
     #[arg(long, value_name = "SCENE=NAME|@FILE")]
     pub scene_name: Vec<String>,
     /// Use only the first N paths of the run.

@@ -40,9 +40,9 @@ fn add(names: &mut Names, text: &str) -> Result<(), Error> {
     Ok(())
 }
 
-/// What a scene may be called elsewhere: by the names that were given, or by its own.
+/// What a scene may be called elsewhere: by the names that were given, else by its own.
 pub(super) fn called<'a>(names: &'a Names, scene: &'a str) -> Vec<&'a str> {
-    names.get(scene).map_or_else(|| vec![scene], |names| names.iter().map(String::as_str).collect())
+    names.get(scene).into_iter().flatten().map(String::as_str).chain([scene]).collect()
 }
 
 #[cfg(test)]
@@ -56,8 +56,8 @@ mod tests {
         fs::write(&file, "house-0=home_0\n\nhouse-7=home_1\n").unwrap();
         let typed = [format!("@{}", file.display()), "house-7=floorplan_1a".to_owned()];
         let names = of(&typed).unwrap();
-        assert_eq!(called(&names, "house-7"), ["home_1", "floorplan_1a"]);
-        assert_eq!(called(&names, "house-0"), ["home_0"]);
+        assert_eq!(called(&names, "house-7"), ["home_1", "floorplan_1a", "house-7"]);
+        assert_eq!(called(&names, "house-0"), ["home_0", "house-0"]);
         assert_eq!(called(&names, "house-9"), ["house-9"]);
         for wrong in [&["home_0"][..], &["=home_0"], &["a=b", "a=b"], &["a=c", "b=c"], &["@nowhere"]] {
             let wrong: Vec<String> = wrong.iter().map(|text| (*text).to_owned()).collect();
