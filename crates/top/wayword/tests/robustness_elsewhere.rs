@@ -8,7 +8,7 @@ mod common;
 use common::{Building, Ran, free_port};
 use serde_json::Value;
 use std::fs;
-use wayword_live::{tdw, virtualhome};
+use wayword_live::{Houses, tdw, virtualhome};
 
 fn robustness(building: &Building, args: &[&str]) -> Ran {
     building.wayword(&[&["robustness", "--run", "run", "--out", "robust", "--resamples", "100"], args].concat())
@@ -65,7 +65,7 @@ fn the_stand_in_for_virtualhome_shows_the_same_house() {
 #[test]
 fn the_stand_in_for_threedworld_shows_the_same_house() {
     let (address, seed) = (free_port(), with_one_storey(1));
-    let options = tdw::stand_in::StandInOptions { house: seed, ..tdw::stand_in::StandInOptions::default() };
+    let options = tdw::stand_in::StandInOptions { houses: Houses::with_one_storey(seed, 1), ..Default::default() };
     let _build = tdw::stand_in::StandIn::start(address, options);
     let platform = format!("tdw@{address}");
     let (building, ran) = elsewhere(seed, &platform, "floorplan_1a");

@@ -5,6 +5,8 @@
 //! read, the error says what was expected, and where.
 
 mod decode;
+#[cfg(feature = "stand-in")]
+mod houses;
 mod live;
 mod raster;
 mod sight;
@@ -13,4 +15,6 @@ pub mod unity;
 pub mod virtualhome;
 mod walk;
 
+#[cfg(feature = "stand-in")]
+pub use houses::{Houses, NotShown, ShownAs};
 pub use live::{Live, Pictures};

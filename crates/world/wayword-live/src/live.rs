@@ -12,11 +12,14 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError},
 };
 use wayword_core::{
-    DVec3, Failure, Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Platform, PlatformError, Pose,
-    SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Failure, Frame, Gaze, GroundTruth, Heading, Image, Label, ObjectId, Path, PathRequest, Platform,
+    PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId,
 };
 use wayword_render::{Camera, flat};
 use wayword_world::{said::Hear, seen_from};
+
+/// How far ahead of a doorway the room lies into which one looks, metres.
+const AHEAD_M: f64 = 0.5;
 
 /// A simulator that runs as a separate program.
 pub(crate) trait Simulator: Send + fmt::Debug {
@@ -43,8 +46,8 @@ pub(crate) trait Simulator: Send + fmt::Debug {
     /// Asks where the objects of the scene are, and where one can walk.
     fn survey(&mut self) -> Result<Survey, Self::Error>;
 
-    /// Takes a picture through a camera whose elevation is 0.
-    fn shoot(&mut self, camera: &Camera) -> Result<Shot, Self::Error>;
+    /// Takes a picture through a camera whose elevation is 0. Where only the ids are `wanted`, it may leave out the rest.
+    fn shoot(&mut self, camera: &Camera, wanted: Wanted) -> Result<Shot, Self::Error>;
 
     /// The corners of the shortest way between two eye positions, both ends included; `None` where there is no way.
     fn way(&mut self, survey: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, Self::Error>;
@@ -90,6 +93,20 @@ pub(crate) struct Survey {
     pub(crate) palette: Palette,
     /// Rooms, where they have names.
     pub(crate) rooms: Vec<Room>,
+    /// The floor in doorways: who stands there is in the room into which they look.
+    pub(crate) thresholds: Vec<Area>,
+}
+
+/// A rectangle of floor: lower and upper corner.
+pub(crate) type Area = ([f64; 2], [f64; 2]);
+
+/// What is wanted of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Everything.
+    Picture,
+    /// What is where in it.
+    Ids,
 }
 
 /// A room with a name.
@@ -102,7 +119,8 @@ pub(crate) struct Room {
 
 /// A picture, and the colour of each pixel's object as [`sight::colour_id`] encodes it.
 pub(crate) struct Shot {
-    pub(crate) rgb: Vec<u8>,
+    /// `None` where it was not wanted.
+    pub(crate) rgb: Option<Vec<u8>>,
     pub(crate) ids: Vec<u32>,
 }
 
@@ -214,15 +232,30 @@ impl<S: Simulator> Live<S> {
 
     /// The picture and its ground truth: labels of what is visible, and the room. There is no ground truth where the
     /// scene has neither objects nor named rooms, because then nothing in it is labelled.
-    fn seen(&self, scene: &SceneId, eye: DVec3, gaze: Gaze) -> Result<(Vec<u8>, Option<GroundTruth>), PlatformError> {
+    fn seen(
+        &self,
+        scene: &SceneId,
+        (eye, gaze): (DVec3, Gaze),
+        wanted: Wanted,
+    ) -> Result<(Option<Vec<u8>>, Option<GroundTruth>), PlatformError> {
         let camera = self.camera(eye, gaze);
         self.with(scene, |simulator, known| {
-            let Shot { rgb, ids } = simulator.shoot(&camera)?;
+            let Shot { rgb, ids } = simulator.shoot(&camera, wanted)?;
             let labels = sight::labels(&camera, gaze, ids, &known.survey.palette);
-            let (lists_objects, room) = (!known.survey.palette.is_empty(), known.survey.room(eye));
+            let (lists_objects, room) = (!known.survey.palette.is_empty(), known.survey.room(eye, gaze.heading));
             let is_known = lists_objects || !known.survey.rooms.is_empty();
             Ok((rgb, is_known.then_some(GroundTruth { labels, lists_objects, room })))
         })
+    }
+
+    fn view(&self, scene: &SceneId, from: &Frame, gaze: Gaze, wanted: Wanted) -> Result<View, PlatformError> {
+        walk::check(scene, from)?;
+        let gaze = flat(gaze);
+        let (rgb, truth) = self.seen(scene, (from.pose.position, gaze), wanted)?;
+        // The decoder has checked the picture's size.
+        let image = rgb.and_then(|rgb| Image::new(self.pictures.width_px, self.pictures.height_px, rgb).ok());
+        let pose = Pose::level(from.pose.position, gaze.heading);
+        Ok(View::new(pose, gaze.horizontal_fov_rad, image.map(Arc::new), truth))
     }
 }
 
@@ -241,10 +274,21 @@ impl<S: Simulator> Running<S> {
 }
 
 impl Survey {
-    fn room(&self, eye: DVec3) -> Option<String> {
+    /// The room in which an eye is. If the eye stands in a doorway, it is the room into which it looks.
+    fn room(&self, eye: DVec3, heading: Heading) -> Option<String> {
+        let holds = |area: &Area, at: DVec3| {
+            let (low, high) = area;
+            (low[0]..=high[0]).contains(&at.x) && (low[1]..=high[1]).contains(&at.y)
+        };
+        let is_on_threshold = self.thresholds.iter().any(|area| holds(area, eye));
+        let ahead = eye + heading.direction() * AHEAD_M;
+        is_on_threshold.then(|| self.room_at(ahead)).flatten().or_else(|| self.room_at(eye))
+    }
+
+    fn room_at(&self, place: DVec3) -> Option<String> {
         let holds = |room: &&Room| {
             let (low, high) = room.bounds_m;
-            eye.cmpge(low).all() && eye.cmple(high).all()
+            place.cmpge(low).all() && place.cmple(high).all()
         };
         self.rooms.iter().find(holds).map(|room| room.name.clone())
     }
@@ -259,7 +303,7 @@ impl<S: Simulator> walk::Walkable for Walker<'_, S> {
     }
 
     fn labels(&mut self, pose: Pose, gaze: Gaze) -> Result<Vec<Label>, PlatformError> {
-        let (_, truth) = self.0.seen(self.1, pose.position, gaze)?;
+        let (_, truth) = self.0.seen(self.1, (pose.position, gaze), Wanted::Ids)?;
         Ok(truth.map_or_else(Vec::new, |truth| truth.labels))
     }
 }
@@ -287,13 +331,11 @@ impl<S: Simulator> Platform for Live<S> {
     }
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        walk::check(scene, from)?;
-        let gaze = flat(gaze);
-        let (rgb, truth) = self.seen(scene, from.pose.position, gaze)?;
-        let image = Image::new(self.pictures.width_px, self.pictures.height_px, rgb);
-        let pose = Pose::level(from.pose.position, gaze.heading);
-        // The decoder has checked the picture's size.
-        Ok(View::new(pose, gaze.horizontal_fov_rad, image.ok().map(Arc::new), truth))
+        self.view(scene, from, gaze, Wanted::Picture)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        self.view(scene, from, gaze, Wanted::Ids)
     }
 
     fn object_name(&self, scene: &SceneId, _: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {

@@ -13,10 +13,10 @@ use std::{
 use wayword_core::{Gaze, Heading, ObjectId, PathRequest, Platform, SceneId};
 use wayword_house::{Ground, HouseOptions, HousePlatform, HouseScene, Role, generate};
 use wayword_live::{
-    Pictures,
+    Houses, Pictures,
     tdw::{
         ControllerOptions, TdwOptions, TdwPlatform,
-        stand_in::{StandIn, StandInOptions},
+        stand_in::{Furnished, StandIn, StandInOptions},
     },
 };
 
@@ -98,6 +98,8 @@ fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
         let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
         assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
         let truth = view.ground_truth().unwrap();
+        let without = platform.look_without_picture(&scene(), &frame, gaze).unwrap();
+        assert!(without.image.is_none() && without.ground_truth() == Some(truth), "labels need no picture");
         assert!(truth.lists_objects);
         for label in &truth.labels {
             let object = &drawn.objects[&label.object.as_str().parse::<u32>().unwrap()];
@@ -130,6 +132,25 @@ fn labels_are_those_of_the_built_in_platform() {
         labels += ours.len();
     }
     assert!(labels > 10, "{labels}");
+}
+
+/// Each house is the floor plan of its place, with labels of its furniture alone.
+#[test]
+fn several_houses_are_floor_plans_of_their_own() {
+    let houses = Houses::with_one_storey(5, 3);
+    let shown = StandIn::scenes(&houses).unwrap();
+    let (platform, _build) = start(StandInOptions { houses, furnished: Furnished::Always, ..Default::default() });
+    for shown in shown.iter().chain(shown.iter().rev()) {
+        let scene = SceneId::new(shown.scene.clone()).unwrap();
+        let graph = platform.graph(&scene).unwrap();
+        let frame = graph.walk(&[graph.viewpoints().next().unwrap().clone()], None).unwrap().remove(0);
+        let house = HouseScene::new(generate(shown.seed)).unwrap();
+        for (id, object) in &house.objects {
+            let told = platform.object_name(&scene, &frame, &ObjectId::new(id.to_string()).unwrap()).unwrap();
+            let expected = (object.role == Role::Furniture).then_some(object.name.as_str());
+            assert_eq!(told.as_deref(), expected, "{shown}");
+        }
+    }
 }
 
 #[test]
@@ -193,7 +214,7 @@ fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::Groun
 fn a_plan_without_furniture_has_no_labels_and_says_how_it_is_furnished() {
     let folder = tempfile::tempdir().unwrap();
     package(folder.path());
-    let honest = StandInOptions { furnishes: false, ..StandInOptions::default() };
+    let honest = StandInOptions { furnished: Furnished::OnceAdded, ..StandInOptions::default() };
     let (platform, _build) = start_with(honest, Some(folder.path().to_owned()));
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hearing = heard.clone();

@@ -8,10 +8,10 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_core::{Gaze, Heading, PathRequest, Platform, SceneId};
-use wayword_house::{Ground, HouseScene, generate};
+use wayword_core::{DVec3, Frame, Gaze, Heading, ObjectId, PathRequest, Platform, Pose, SceneId};
+use wayword_house::{Ground, HousePlatform, HouseScene, generate};
 use wayword_live::{
-    Pictures,
+    Houses, Pictures,
     virtualhome::{Client, VirtualHomeOptions, VirtualHomePlatform, stand_in::StandIn},
 };
 
@@ -85,8 +85,9 @@ fn a_view_is_the_houses_own_with_the_names_of_things_and_room() {
         let off = picture.rgb.iter().zip(pixels).filter(|(a, b)| a.abs_diff(**b) > 8).count();
         assert!(off < pixels.len() / 200, "{off} of {} values differ", pixels.len());
         let truth = view.ground_truth().unwrap();
-        let eye = frame.pose.position;
-        assert_eq!(truth.room.as_deref(), drawn.house.room_at(eye.x, eye.y, 0.0).map(|room| room.kind.word()));
+        let without = platform.look_without_picture(&scene(), &frame, Gaze::quarter(Heading::new(2.0).unwrap()));
+        let without = without.unwrap();
+        assert!(without.image.is_none() && without.ground_truth() == Some(truth), "labels need no picture");
         for label in &truth.labels {
             let number: u32 = label.object.as_str().parse().unwrap();
             let name = drawn.objects[&number].name.replace(' ', "");
@@ -96,6 +97,58 @@ fn a_view_is_the_houses_own_with_the_names_of_things_and_room() {
         labels += truth.labels.len();
     }
     assert!(labels > 5, "{labels}");
+}
+
+/// Who stands in a doorway is in the room into which they look, as in the built-in platform.
+#[test]
+fn rooms_are_those_of_the_built_in_platform_in_doorways_too() {
+    let (platform, _simulator) = start();
+    let (within, house) = (HousePlatform::default(), house().house);
+    let scene_within = HousePlatform::scene_of(house.seed).unwrap();
+    let doorways: Vec<_> = house.openings.iter().filter(|opening| opening.is_passable()).collect();
+    let ends = doorways.iter().map(|opening| {
+        let (x, y) = opening.span.thickened(1).centre();
+        DVec3::new(f64::from(x) / 100.0, f64::from(y) / 100.0, 1.5)
+    });
+    let graph = platform.graph(&scene()).unwrap();
+    let eyes = graph.viewpoints().step_by(9).map(|id| graph.position(id).unwrap()).collect::<Vec<_>>();
+    let mut told = 0;
+    for (eye, turn) in ends.chain(eyes).flat_map(|eye| [0.3, 1.9, 3.4, 5.0].map(|turn| (eye, turn))) {
+        let frame = Frame { pose: Pose::level(eye, Heading::new(turn).unwrap()), viewpoint: None, level: None };
+        let gaze = Gaze::quarter(frame.pose.heading);
+        let room = |platform: &dyn Platform, scene: &SceneId| {
+            let view = platform.look_without_picture(scene, &frame, gaze).unwrap();
+            view.ground_truth().unwrap().room.clone()
+        };
+        let expected = room(&within, &scene_within);
+        assert_eq!(room(&platform, &scene()), expected, "at {eye}, {turn} rad");
+        told += usize::from(expected.is_some());
+    }
+    assert!(told > 4 * doorways.len(), "{told}");
+}
+
+/// Home `n` is the house that was named in place `n`.
+#[test]
+fn several_houses_are_homes_of_their_own() {
+    let houses = Houses::with_one_storey(5, 3);
+    let simulator = StandIn::showing(([127, 0, 0, 1], 0).into(), houses.clone()).unwrap();
+    let options = VirtualHomeOptions { url: simulator.url(), timeout: Duration::from_secs(20), ..Default::default() };
+    let platform = VirtualHomePlatform::new(options);
+    let shown = StandIn::scenes(&houses).unwrap();
+    // There and back: what was surveyed before is shown again.
+    for shown in shown.iter().chain(shown.iter().rev()) {
+        let scene = SceneId::new(shown.scene.clone()).unwrap();
+        let house = generate(shown.seed);
+        for piece in &house.furniture {
+            let object = ObjectId::new(piece.id.to_string()).unwrap();
+            let frame =
+                Frame { pose: Pose::level(DVec3::new(1.0, 1.0, 1.5), Heading::NORTH), viewpoint: None, level: None };
+            let name = platform.object_name(&scene, &frame, &object).unwrap();
+            assert_eq!(name.as_deref(), Some(&*piece.name), "{shown}");
+        }
+    }
+    let beyond = platform.graph(&SceneId::new("home_3").unwrap()).unwrap_err().to_string();
+    assert!(beyond.contains("cannot do that"), "{beyond}");
 }
 
 #[test]

@@ -44,9 +44,10 @@ pub struct Robustness {
     /// commas. It answers from the labels of the same pose; its recall falls and its mistakes rise with the dose.
     #[arg(long, value_name = "EYE")]
     pub eye: Option<String>,
-    /// The name that another platform has for a scene of the run, for `--change platform=`: SCENE=NAME. Give the flag several
-    /// times. [default: the same name]
-    #[arg(long, value_name = "SCENE=NAME")]
+    /// The name that another platform has for a scene of the run, for `--change platform=`: SCENE=NAME, or @FILE with one such
+    /// line for each scene. Give the flag several times. A scene may have several names: on each platform the first counts
+    /// that is there, and after these the scene's own name.
+    #[arg(long, value_name = "SCENE=NAME|@FILE")]
     pub scene_name: Vec<String>,
     /// Use only the first N paths of the run.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]

@@ -18,8 +18,8 @@ use wayword_language::text::word_count;
 
 /// A text may be longer or shorter than its style's by this, words.
 const SLACK: f64 = 2.0;
-/// Nor longer than so many times these words where many things are seen.
-const MOST: f64 = 1.25;
+/// And no longer than so many times its words where many things are seen.
+const MOST: f64 = 1.1;
 /// A way is planned so often until a text copies nothing from the style's references.
 const PLANS: usize = 8;
 /// And words that are copied are replaced so often.

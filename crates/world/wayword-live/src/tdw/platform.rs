@@ -6,7 +6,7 @@ use super::{
     scenes::{self, Plan},
     session,
 };
-use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey};
+use crate::live::{Ear, Live, Pictures, Shot, Simulator, Survey, Wanted};
 use std::path::PathBuf;
 use wayword_core::{DVec3, Failure, SceneId};
 use wayword_render::Camera;
@@ -34,6 +34,8 @@ pub struct Tdw {
     package: Option<PathBuf>,
     size: (u32, u32),
     loaded: Option<SceneId>,
+    /// What the camera was last told to send, where that is known.
+    sends: Option<Wanted>,
     ear: Ear,
 }
 
@@ -46,7 +48,7 @@ impl TdwPlatform {
         let TdwOptions { controller, package, pictures } = options;
         let controller = Controller::bind(controller)?;
         let size = (pictures.width_px, pictures.height_px);
-        Ok(Self::over(Tdw { controller, package, size, loaded: None, ear: Ear::deaf() }, pictures))
+        Ok(Self::over(Tdw { controller, package, size, loaded: None, sends: None, ear: Ear::deaf() }, pictures))
     }
 
     /// Where builds connect to: `tcp://`, the host, and the port that was really opened.
@@ -110,7 +112,7 @@ impl Simulator for Tdw {
         if self.loaded.as_ref() == Some(scene) {
             return Ok(());
         }
-        self.loaded = None;
+        (self.loaded, self.sends) = (None, None);
         let plan = Plan::of(scene).ok_or_else(|| TdwError::Scene(format!("there is no scene {scene}")))?;
         let commands = plan.commands(self.package.as_deref())?;
         self.ear.hear(&format!("the build loads {scene}; it downloads what it does not have yet, which takes minutes"));
@@ -127,8 +129,12 @@ impl Simulator for Tdw {
         Ok(survey)
     }
 
-    fn shoot(&mut self, camera: &Camera) -> Result<Shot, TdwError> {
-        session::shoot(&mut self.controller, camera)
+    fn shoot(&mut self, camera: &Camera, wanted: Wanted) -> Result<Shot, TdwError> {
+        let is_told = self.sends == Some(wanted);
+        self.sends = None;
+        let shot = session::shoot(&mut self.controller, camera, (wanted, is_told))?;
+        self.sends = Some(wanted);
+        Ok(shot)
     }
 
     fn way(&mut self, _: &Survey, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, TdwError> {

@@ -33,6 +33,12 @@ pub(super) enum Plan {
     Room { width_m: u32, length_m: u32 },
 }
 
+/// The names of the floor plans without furniture.
+#[cfg(feature = "stand-in")]
+pub(super) fn plans() -> Vec<String> {
+    PLANS.map(|plan| format!("floorplan_{plan}")).to_vec()
+}
+
 /// The names of all listed scenes. Floor plans are furnished where the lists of furniture are available.
 pub(super) fn names(package: Option<&Path>) -> Vec<String> {
     let furnished = |plan: &str| LAYOUTS.map(|layout| format!("floorplan_{plan}_{layout}")).to_vec();

@@ -8,7 +8,7 @@ use super::{
     pictures::{self, PassKind},
 };
 use crate::{
-    live::{Shot, Survey},
+    live::{Shot, Survey, Wanted},
     raster::Raster,
     sight::{Palette, Thing, colour_id},
     unity::{unity_from_wayword, unity_rotation_from_heading, wayword_from_unity},
@@ -35,12 +35,10 @@ pub(super) fn load(
     mut commands: Vec<Command>,
     (width, height): (u32, u32),
 ) -> Result<(), TdwError> {
-    let passes = [PassKind::Img, PassKind::Id].map(PassKind::name).to_vec();
     commands.extend([
         Command::SetScreenSize { width, height },
         Command::CreateAvatar { kind: "A_Img_Caps_Kinematic", id: AVATAR.to_owned() },
         Command::SetImgPassEncoding { value: true },
-        Command::SetPassMasks { pass_masks: passes, avatar_id: AVATAR.to_owned() },
     ]);
     controller.communicate(&commands).map(drop)
 }
@@ -65,7 +63,7 @@ pub(super) fn survey(controller: &mut Controller) -> Result<Survey, TdwError> {
     let eyes = eyes(controller, &raster.places())?;
     let graph = raster.graph(&eyes).map_err(|error| TdwError::Scene(error.to_string()))?;
     // The build's regions have boxes, but no names.
-    Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new() })
+    Ok(Survey { graph, raster, palette: palette(&answer)?, rooms: Vec::new(), thresholds: Vec::new() })
 }
 
 fn raster(map: &Occupancy) -> Option<Raster> {
@@ -134,19 +132,31 @@ pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result
     Ok(Some(way).filter(|way| way.len() >= 2 && way.iter().all(|corner| corner.is_finite())))
 }
 
-/// Takes a picture through a camera of the size that the scene was loaded with.
-pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot, TdwError> {
+/// Takes a picture through a camera of the size that the scene was loaded with. `is_told` says that the camera already
+/// sends just what is wanted.
+pub(super) fn shoot(
+    controller: &mut Controller,
+    camera: &Camera,
+    (wanted, is_told): (Wanted, bool),
+) -> Result<Shot, TdwError> {
     let size = (camera.width, camera.height);
     let avatar_id = || AVATAR.to_owned();
     let heading = Heading::new(camera.heading_rad).unwrap_or(Heading::NORTH);
     let [x, y, z, w] = unity_rotation_from_heading(heading);
     let field_of_view = camera.vertical_fov_rad.to_degrees();
-    let answer = controller.communicate(&[
+    let passes: &[PassKind] = match wanted {
+        Wanted::Picture => &[PassKind::Img, PassKind::Id],
+        Wanted::Ids => &[PassKind::Id],
+    };
+    let pass_masks = passes.iter().map(|pass| pass.name()).collect();
+    let told = (!is_told).then(|| Command::SetPassMasks { pass_masks, avatar_id: avatar_id() });
+    let looking = [
         Command::TeleportAvatarTo { position: vector(camera.position), avatar_id: avatar_id() },
         Command::RotateAvatarTo { rotation: Quaternion { w, x, y, z }, avatar_id: avatar_id() },
         Command::SetFieldOfView { field_of_view, avatar_id: avatar_id() },
         Command::SendImages { ids: vec![avatar_id()], frequency: Frequency::Once },
-    ])?;
+    ];
+    let answer = controller.communicate(&told.into_iter().chain(looking).collect::<Vec<_>>())?;
     let images = answer.first("imag", "send_images", |output| match output {
         Output::Images(images) if images.avatar == AVATAR => Some(images),
         _ => None,
@@ -161,7 +171,8 @@ pub(super) fn shoot(controller: &mut Controller, camera: &Camera) -> Result<Shot
         pictures::rgb(pass.ok_or_else(missing)?, kind, size)
     };
     let ids = pixels(PassKind::Id)?.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect();
-    Ok(Shot { rgb: pixels(PassKind::Img)?, ids })
+    let rgb = (wanted == Wanted::Picture).then(|| pixels(PassKind::Img)).transpose()?;
+    Ok(Shot { rgb, ids })
 }
 
 fn vector(place: DVec3) -> Vector3 {

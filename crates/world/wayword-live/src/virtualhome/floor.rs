@@ -1,7 +1,7 @@
 //! Computes where one can walk in a home, from the boxes of its rooms, doors and objects.
 
 use super::{error::HomeError, graph::EnvironmentGraph};
-use crate::raster::Raster;
+use crate::{live::Area, raster::Raster};
 use wayword_core::DVec3;
 
 /// Side of the floor's cells, metres.
@@ -12,15 +12,14 @@ const RADIUS_M: f64 = 0.2;
 const WALL_M: f64 = 0.15;
 /// How far a door's passage reaches into the rooms on both sides, metres.
 const REACH_M: f64 = 0.5;
+/// How far from the middle of a wall one still stands in its doorway, metres.
+const THRESHOLD_M: f64 = 0.25;
 /// Heights above the floor between which objects are in the way, metres: the agent steps over lower ones and walks
 /// under higher ones.
 const IN_WAY_M: [f64; 2] = [0.1, 1.7];
 /// Largest home, metres, and most nodes in it, so that a hostile graph costs seconds at most.
 const MAX_SIDE_M: f64 = 80.0;
 const MAX_NODES: usize = 5000;
-
-/// A rectangle of floor: lower and upper corner.
-type Area = ([f64; 2], [f64; 2]);
 
 fn holds((low, high): &Area, at: [f64; 2]) -> bool {
     (0..2).all(|axis| (low[axis]..=high[axis]).contains(&at[axis]))
@@ -70,6 +69,17 @@ fn passage(door: (DVec3, DVec3)) -> Area {
     let size = door.1 - door.0;
     let along = |length: f64| -(RADIUS_M.min(length / 2.0 - CELL_M));
     if size.x >= size.y { grown(door, [along(size.x), REACH_M]) } else { grown(door, [REACH_M, along(size.y)]) }
+}
+
+/// The floor in each doorway. A door that is less thick than a wall counts as if it were as thick.
+pub(super) fn thresholds(graph: &EnvironmentGraph) -> Vec<Area> {
+    let doors = graph.nodes.iter().filter(|node| node.is_passage()).filter_map(|node| node.bounding_box?.bounds_m());
+    let threshold = |door: (DVec3, DVec3)| {
+        let size = door.1 - door.0;
+        let across = |thick: f64| (THRESHOLD_M - thick / 2.0).max(0.0);
+        if size.x >= size.y { grown(door, [0.0, across(size.y)]) } else { grown(door, [across(size.x), 0.0]) }
+    };
+    doors.map(threshold).collect()
 }
 
 #[cfg(test)]

@@ -16,13 +16,58 @@ static CLASSES: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
 
 /// First words of names that are not in the list: names of classes that users add, and the stand-in's. What follows
 /// must be a word as well, of at least three letters.
-const FIRST: [&str; 26] = [
-    "bathroom", "bedroom", "ceiling", "clothes", "coffee", "closet", "cutting", "desk", "dining", "dish", "door",
-    "floor", "garage", "garbage", "kitchen", "laundry", "light", "living", "picture", "power", "remote", "table",
-    "toilet", "tv", "wall", "washing",
+const FIRST: [&str; 35] = [
+    "bathroom",
+    "bath",
+    "bedroom",
+    "cardboard",
+    "ceiling",
+    "clothes",
+    "coffee",
+    "closet",
+    "console",
+    "cutting",
+    "desk",
+    "dining",
+    "dish",
+    "door",
+    "floor",
+    "front",
+    "fruit",
+    "garage",
+    "garbage",
+    "kitchen",
+    "laundry",
+    "light",
+    "living",
+    "metal",
+    "office",
+    "picture",
+    "power",
+    "range",
+    "remote",
+    "side",
+    "table",
+    "toilet",
+    "tv",
+    "wall",
+    "washing",
 ];
 /// Names that begin with one of these words but are one word.
-const WHOLE: [&str; 8] = ["closets", "doorway", "floors", "kitchens", "lights", "tables", "tablet", "tablets"];
+const WHOLE: [&str; 12] = [
+    "bathrobe",
+    "bathtub",
+    "closets",
+    "doormat",
+    "doorway",
+    "floors",
+    "kitchens",
+    "lights",
+    "sideboard",
+    "tables",
+    "tablet",
+    "tablets",
+];
 
 /// `coffeetable` as "coffee table", `clothes_pants` as "pants".
 pub(super) fn words(class_name: &str) -> String {

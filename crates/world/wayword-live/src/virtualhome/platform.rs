@@ -8,7 +8,7 @@ use super::{
     names,
 };
 use crate::{
-    live::{Ear, Live, Pictures, Room, Shot, Simulator, Survey},
+    live::{Ear, Live, Pictures, Room, Shot, Simulator, Survey, Wanted},
     sight::{Palette, Thing, colour_id},
     unity::unity_from_wayword,
     walk::EYE_M,
@@ -61,6 +61,11 @@ impl VirtualHomePlatform {
     }
 }
 
+/// The names of all homes.
+pub(super) fn homes() -> Vec<String> {
+    HOMES.map(|home| format!("home_{home}")).collect()
+}
+
 /// The number in a scene's name.
 fn home_of(scene: &SceneId) -> Option<u32> {
     let number: u32 = scene.as_str().strip_prefix("home_")?.parse().ok()?;
@@ -107,7 +112,7 @@ impl Simulator for VirtualHome {
     }
 
     fn scenes(&self) -> Vec<String> {
-        HOMES.map(|home| format!("home_{home}")).collect()
+        homes()
     }
 
     fn refuses(&self, scene: &SceneId) -> Option<&'static str> {
@@ -141,14 +146,21 @@ impl Simulator for VirtualHome {
         let eye = |[x, y]: [f64; 2]| DVec3::new(x, y, floor_m + EYE_M);
         let eyes: Vec<DVec3> = raster.places().into_iter().map(eye).collect();
         let viewpoints = raster.graph(&eyes).map_err(|error| HomeError::Floor(error.to_string()))?;
-        Ok(Survey { graph: viewpoints, raster, palette: palette(&graph, &colours), rooms: rooms(&graph) })
+        Ok(Survey {
+            graph: viewpoints,
+            raster,
+            palette: palette(&graph, &colours),
+            rooms: rooms(&graph),
+            thresholds: floor::thresholds(&graph),
+        })
     }
 
-    fn shoot(&mut self, camera: &Camera) -> Result<Shot, HomeError> {
+    fn shoot(&mut self, camera: &Camera, wanted: Wanted) -> Result<Shot, HomeError> {
         let index = self.loaded.as_ref().map_or(0, |(_, index)| *index);
         let shot = (|| {
             self.client.update_camera(index, &home_camera(camera))?;
-            let rgb = self.client.camera_image(index, Mode::Normal, self.size)?;
+            let mut picture = || self.client.camera_image(index, Mode::Normal, self.size);
+            let rgb = (wanted == Wanted::Picture).then(&mut picture).transpose()?;
             let colours = self.client.camera_image(index, Mode::Instances, self.size)?;
             Ok(Shot { rgb, ids: colours.as_chunks().0.iter().map(|rgb| colour_id(*rgb)).collect() })
         })();

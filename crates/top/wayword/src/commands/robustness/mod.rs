@@ -6,6 +6,7 @@ mod elsewhere;
 mod eye;
 mod figures;
 mod making;
+mod names;
 mod other;
 mod reader;
 mod record;
@@ -72,7 +73,7 @@ struct Kept {
     eye: Option<String>,
     /// The names of its scenes elsewhere.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    scene_names: BTreeMap<String, String>,
+    scene_names: names::Names,
     /// Only this many paths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     limit: Option<u32>,
@@ -197,7 +198,7 @@ fn begin(args: &Robustness, base: &Base, out: &FilePath) -> Result<run::Held, Er
         run: folder.canonicalize().map_err(Error::io(folder, "find"))?,
         walks: hash_of_file(&folder.join(run::file::WALKS))?,
         eye: args.eye.clone(),
-        scene_names: elsewhere::names(&args.scene_name)?,
+        scene_names: names::of(&args.scene_name)?,
         limit: args.limit,
         seed: args.seed,
     };
@@ -241,7 +242,7 @@ fn make(
         let left: Vec<&Path> = base.paths.iter().filter(|path| !journal.has(&key(&arm.id(), &path.id))).collect();
         let elsewhere = match arm {
             Arm::Changed(Change::Platform(spec)) if !left.is_empty() => {
-                Some(Elsewhere::open(spec, base, platform, (out, &elsewhere::names(&args.scene_name)?))?)
+                Some(Elsewhere::open(spec, base, platform, (out, &names::of(&args.scene_name)?))?)
             }
             _ => None,
         };
@@ -252,7 +253,7 @@ fn make(
             interrupt::check()?;
             crew.line(&within, path)
         };
-        in_order(&left, workers, making, |path, made| {
+        let mut keep = |path: &&Path, made: Result<Line, Error>| {
             bar.inc(1);
             match made {
                 Ok(line) => journal.append(&line)?,
@@ -263,7 +264,15 @@ fn make(
                 }
             }
             Ok(true)
-        })?;
+        };
+        if within.elsewhere.is_some() {
+            // A simulator shows one scene at a time, and takes seconds to show another.
+            for paths in by_scene(left) {
+                in_order(&paths, workers, making, &mut keep)?;
+            }
+        } else {
+            in_order(&left, workers, making, &mut keep)?;
+        }
         if *arm == Arm::Unchanged {
             unchanged = read(out)?.remove(&arm.id()).unwrap_or_default();
         }
@@ -271,6 +280,15 @@ fn make(
     bar.finish_and_clear();
     journal.sync()?;
     Ok(failed)
+}
+
+/// Paths with those of the same scene together.
+fn by_scene(paths: Vec<&Path>) -> impl Iterator<Item = Vec<&Path>> {
+    let mut scenes: BTreeMap<_, Vec<&Path>> = BTreeMap::new();
+    for path in paths {
+        scenes.entry(&path.scene).or_default().push(path);
+    }
+    scenes.into_values()
 }
 
 /// All kept lines.

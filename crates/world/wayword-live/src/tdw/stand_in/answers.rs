@@ -52,7 +52,9 @@ pub(super) fn pictures(state: &mut BuildState) -> Vec<Vec<u8>> {
 
 fn images(state: &BuildState, avatar: &Avatar) -> Option<Vec<u8>> {
     let (width, height) = state.size;
-    let picture = state.world.scene.picture(&avatar.camera(state.size)).ok()?;
+    let (scene, camera) = (&state.world.scene, avatar.camera(state.size));
+    let has_colours = avatar.pass_masks.iter().any(|pass| pass == "_img");
+    let picture = if has_colours { scene.picture(&camera) } else { scene.ids(&camera) }.ok()?;
     let is_object = |id| state.world.is_object(id);
     let passes = pictures::passes(&picture, &avatar.pass_masks, state.png, is_object).into_iter().map(
         |pictures::Pass(mask, bytes, extension)| vec![Field::I32(mask), Field::Bytes(bytes), Field::U8(extension)],

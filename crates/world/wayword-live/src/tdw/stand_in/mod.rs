@@ -1,8 +1,8 @@
-//! A program that speaks the TDW build's protocol and draws a generated house, for tests and demonstrations.
+//! A program that speaks the TDW build's protocol and draws generated houses, for tests and demonstrations.
 //!
 //! It knows the commands that Wayword and its tests send and ignores all others, as the build ignores what it cannot
-//! do. Rooms, walls and furniture are those of the house, whatever scene and objects the commands name. Whether there
-//! is furniture may depend on whether objects were added ([`StandInOptions::furnishes`]).
+//! do. The name of the scene chooses the house. Rooms, walls and furniture are those of the house, whatever objects the
+//! commands name. Whether there is furniture may depend on whether objects were added ([`Furnished`]).
 
 mod answers;
 mod flat;
@@ -10,7 +10,11 @@ mod pictures;
 mod state;
 mod world;
 
-use super::zmtp::{Peer, Role, WireError};
+use super::{
+    scenes,
+    zmtp::{Peer, Role, WireError},
+};
+use crate::houses::{Houses, NotShown, ShownAs};
 pub(crate) use pictures::{id_colour, png_file as png};
 use serde_json::Value;
 use state::BuildState;
@@ -36,11 +40,11 @@ const PATIENCE: Duration = Duration::from_secs(60);
 pub struct StandInOptions {
     /// The version that it reports. Up to 1.12 `vers` is a FlatBuffer, later plain bytes.
     pub version: &'static str,
-    /// Seed of the house that it draws: the first house with a single storey from this seed on.
-    pub house: u64,
-    /// Whether the house is furnished and labelled, whatever scene is loaded. Otherwise it is like the genuine build's
-    /// floor plans: without furniture until an object is added, and with labels for furniture only.
-    pub furnishes: bool,
+    /// The houses that it draws: the first as `floorplan_1a`, the next as `floorplan_1b`, and so on through
+    /// [`StandIn::scenes`]. All other scenes show the first house.
+    pub houses: Houses,
+    /// What stands in them, and what of it has labels.
+    pub furnished: Furnished,
     /// How many lists of commands it pretends not to have received (`ftre`).
     pub deaf: u32,
     /// After this many answers the connection breaks, once, and a new build takes over.
@@ -51,12 +55,23 @@ pub struct StandInOptions {
     pub canned: Option<Vec<Vec<u8>>>,
 }
 
+/// What stands in the houses of a stand-in, and what of it has labels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Furnished {
+    /// Furniture; doors and windows have labels, too, which they do not have in the genuine build.
+    WithFixtures,
+    /// Furniture, which alone has labels: as in the genuine build's floor plans once they are furnished.
+    Always,
+    /// The same, but there is no furniture until an object is added.
+    OnceAdded,
+}
+
 impl Default for StandInOptions {
     fn default() -> Self {
         Self {
             version: "1.13.0.0",
-            house: 1,
-            furnishes: true,
+            houses: Houses::with_one_storey(1, 1),
+            furnished: Furnished::WithFixtures,
             deaf: 0,
             breaks_after: None,
             hangs_after: None,
@@ -80,6 +95,14 @@ impl StandIn {
         let stopped = stop.clone();
         let thread = spawn(move || Build { controller, options, stop: stopped, answered: 0 }.run());
         Self { stop, thread: Some(thread) }
+    }
+
+    /// The scenes as which it shows houses: the names of unfurnished floor plans.
+    ///
+    /// # Errors
+    /// When there are more houses than floor plans.
+    pub fn scenes(houses: &Houses) -> Result<Vec<ShownAs>, NotShown> {
+        houses.shown_as(scenes::plans())
     }
 
     /// Waits until it has received the command to end.
@@ -124,7 +147,8 @@ impl Build {
     fn talk(&mut self, stream: TcpStream, worlds: &mut Option<Worlds>) -> Result<(), WireError> {
         let mut peer = Peer::greet(stream, Role::Req, Instant::now() + PATIENCE)?;
         peer.send(&[b"hello"])?;
-        let worlds = worlds.get_or_insert_with(|| Worlds::new(self.options.house, self.options.furnishes)).clone();
+        let worlds =
+            worlds.get_or_insert_with(|| Worlds::new(self.options.houses.clone(), self.options.furnished)).clone();
         let mut state = BuildState::new(worlds, self.options.version);
         loop {
             while !peer.has_news(PAUSE) {
@@ -209,7 +233,7 @@ pub(super) fn frames_of_every_kind() -> &'static [(String, Vec<u8>)] {
         {"$type":"send_nav_mesh_path","origin":{"x":1,"y":0,"z":1},"destination":{"x":3,"y":0,"z":3},"id":4},
         {"$type":"terminate"}]"#;
     FRAMES.get_or_init(|| {
-        let mut old = BuildState::new(Worlds::new(1, true), "1.12.27");
+        let mut old = BuildState::new(Worlds::new(Houses::with_one_storey(1, 1), Furnished::WithFixtures), "1.12.27");
         let mut frames = obey(&mut old, &[br#"[{"$type":"send_version"}]"#.to_vec()]);
         let mut new = BuildState::new(old.worlds, "1.13.0.0");
         frames.extend(obey(&mut new, &[COMMANDS.as_bytes().to_vec()]));

@@ -28,7 +28,7 @@ pub(super) enum Pictures {
 #[derive(Debug)]
 pub(super) struct BuildState {
     pub(super) worlds: Worlds,
-    /// The one that is loaded.
+    /// What shows now.
     pub(super) world: Arc<World>,
     pub(super) version: &'static str,
     pub(super) avatars: Vec<Avatar>,
@@ -42,7 +42,7 @@ pub(super) struct BuildState {
 impl BuildState {
     pub(super) fn new(worlds: Worlds, version: &'static str) -> Self {
         Self {
-            world: worlds.loaded.clone(),
+            world: worlds.loaded(),
             worlds,
             version,
             avatars: Vec::new(),
@@ -64,9 +64,10 @@ impl BuildState {
         match kind {
             "load_scene" | "add_scene" => {
                 self.avatars.clear();
-                self.world = self.worlds.loaded.clone();
+                self.worlds.enter(command["name"].as_str().unwrap_or_default());
+                self.world = self.worlds.loaded();
             }
-            "add_object" => self.world = self.worlds.furnished.clone(),
+            "add_object" => self.world = self.worlds.furnished(),
             "create_avatar" => self.avatars.push(Avatar {
                 id: command["id"].as_str().unwrap_or("a").to_owned(),
                 position: [0.0; 3],

@@ -1,6 +1,10 @@
 //! The house that the stand-in shows, in Unity's coordinates.
 
-use crate::unity::{unity_from_wayword, wayword_from_unity};
+use super::{super::scenes, Furnished};
+use crate::{
+    houses::Houses,
+    unity::{unity_from_wayword, wayword_from_unity},
+};
 use std::sync::Arc;
 use wayword_core::DVec3;
 use wayword_house::{Ground, House, HouseScene, Object, Role, generate};
@@ -17,18 +21,59 @@ pub struct World {
     counts_fixtures: bool,
 }
 
-/// What a stand-in shows once a scene is loaded, and once an object has been added.
+/// The houses of a stand-in. Only the one that is loaded is kept, because each takes some 15 MB.
 #[derive(Debug, Clone)]
 pub(super) struct Worlds {
-    pub(super) loaded: Arc<World>,
-    pub(super) furnished: Arc<World>,
+    houses: Houses,
+    furnished: Furnished,
+    seed: u64,
+    shown: Shown,
+}
+
+/// What a stand-in shows once a scene is loaded, and once an object has been added.
+#[derive(Debug, Clone)]
+struct Shown {
+    loaded: Arc<World>,
+    furnished: Arc<World>,
 }
 
 impl Worlds {
-    /// The house of a seed; `furnishes` as [`super::StandInOptions`] has it.
-    pub(super) fn new(seed: u64, furnishes: bool) -> Self {
-        if furnishes {
-            let world = Arc::new(World::with_one_storey(seed));
+    /// The first house is loaded.
+    pub(super) fn new(houses: Houses, furnished: Furnished) -> Self {
+        let seed = house_of(&houses, "");
+        Self { houses, furnished, seed, shown: Shown::of(seed, furnished) }
+    }
+
+    /// Loads the house of a scene.
+    pub(super) fn enter(&mut self, scene: &str) {
+        let seed = house_of(&self.houses, scene);
+        if seed != self.seed {
+            self.shown = Shown::of(seed, self.furnished);
+            self.seed = seed;
+        }
+    }
+
+    /// What shows once the scene is loaded.
+    pub(super) fn loaded(&self) -> Arc<World> {
+        self.shown.loaded.clone()
+    }
+
+    /// What shows once an object has been added.
+    pub(super) fn furnished(&self) -> Arc<World> {
+        self.shown.furnished.clone()
+    }
+}
+
+/// The seed of the house that a scene shows.
+fn house_of(houses: &Houses, scene: &str) -> u64 {
+    let place = scenes::plans().iter().position(|plan| plan == scene).unwrap_or(0);
+    houses.seeds().get(place).or(houses.seeds().first()).copied().unwrap_or(0)
+}
+
+impl Shown {
+    fn of(seed: u64, furnished: Furnished) -> Self {
+        if furnished != Furnished::OnceAdded {
+            let world = Arc::new(World::of(one_storey(seed), furnished == Furnished::WithFixtures));
             return Self { loaded: world.clone(), furnished: world };
         }
         let furnished = World::of(one_storey(seed), false);

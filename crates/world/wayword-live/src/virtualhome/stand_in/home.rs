@@ -34,8 +34,9 @@ fn node(id: u64, class: &str, category: &str, (low, high): (DVec3, DVec3)) -> Va
 }
 
 impl Home {
-    pub(super) fn new(number: u64) -> Self {
-        Self { world: World::with_one_storey(number.saturating_add(1)) }
+    /// The first house with one storey from a seed on.
+    pub(super) fn of(seed: u64) -> Self {
+        Self { world: World::with_one_storey(seed) }
     }
 
     /// Rooms and objects, and which object is in which room.
@@ -57,7 +58,10 @@ impl Home {
         for (id, object) in self.world.objects() {
             let opening = house.openings.iter().find(|opening| opening.id == id);
             let (class, category) = match (opening, object.role) {
-                (Some(opening), _) if opening.is_passable() => ("doorjamb", "Doors"),
+                // VirtualHome has both: a jamb where one walks through, and a door where a leaf hangs in it.
+                (Some(opening), _) if opening.is_passable() => {
+                    (if opening.word() == "door" { "door" } else { "doorjamb" }, "Doors")
+                }
                 (_, Role::Furniture) => (object.name.as_str(), "Furniture"),
                 _ => (object.name.as_str(), "Windows"),
             };
@@ -88,13 +92,30 @@ impl Home {
             width: side("image_width"),
             height: side("image_height"),
         };
-        let picture = self.world.house().picture(&camera).ok()?;
         let colour = |id: &u32| if self.world.is_object(*id) { id_colour(*id) } else { [0; 3] };
         let rgb = match wanted["mode"].as_str()? {
-            "normal" => picture.rgb,
-            "seg_inst" => picture.ids.iter().flat_map(colour).collect(),
+            "normal" => self.world.house().picture(&camera).ok()?.rgb,
+            "seg_inst" => self.world.house().ids(&camera).ok()?.ids.iter().flat_map(colour).collect(),
             _ => return None,
         };
         Some(BASE64_STANDARD.encode(png((camera.width, camera.height), &rgb)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::names::words;
+    use wayword_house::generate;
+
+    #[test]
+    fn names_of_a_houses_things_come_apart_as_they_were_joined() {
+        for house in (0..30).map(generate) {
+            let things = house.furniture.iter().map(|piece| piece.name.to_string());
+            let rooms = house.rooms.iter().map(|room| room.kind.word().to_owned());
+            let openings = house.openings.iter().map(|opening| opening.word().to_owned());
+            for name in things.chain(rooms).chain(openings) {
+                assert_eq!(words(&name.replace(' ', "")), name);
+            }
+        }
     }
 }

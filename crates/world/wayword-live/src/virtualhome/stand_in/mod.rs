@@ -1,8 +1,10 @@
-//! A program that speaks VirtualHome's protocol and shows a generated house, for tests and demonstrations.
+//! A program that speaks VirtualHome's protocol and shows generated houses, for tests and demonstrations.
 
 mod home;
 mod http;
 
+use super::platform::homes;
+use crate::houses::{Houses, NotShown, ShownAs};
 use home::Home;
 use serde_json::{Value, json};
 use std::{
@@ -34,13 +36,32 @@ impl StandIn {
     /// # Errors
     /// When the port is taken.
     pub fn start(address: SocketAddr) -> io::Result<Self> {
+        Self::serve(address, Filmed::default())
+    }
+
+    /// Starts a stand-in whose home 0 is the first of these houses, home 1 the next, and so on. It has no other homes.
+    ///
+    /// # Errors
+    /// When the port is taken.
+    pub fn showing(address: SocketAddr, houses: Houses) -> io::Result<Self> {
+        Self::serve(address, Filmed { houses: Some(houses), ..Filmed::default() })
+    }
+
+    /// The scenes as which it shows houses.
+    ///
+    /// # Errors
+    /// When there are more houses than VirtualHome has homes.
+    pub fn scenes(houses: &Houses) -> Result<Vec<ShownAs>, NotShown> {
+        houses.shown_as(homes())
+    }
+
+    fn serve(address: SocketAddr, mut filmed: Filmed) -> io::Result<Self> {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = stop.clone();
         let thread = spawn(move || {
-            let mut filmed = Filmed::default();
             while !stopped.load(Ordering::Relaxed) {
                 match listener.accept() {
                     // A request that breaks off gets no answer.
@@ -75,11 +96,21 @@ impl Drop for StandIn {
 /// The home that is shown, and the cameras in it.
 #[derive(Debug, Default)]
 struct Filmed {
+    /// The houses that it has; without them one for each number.
+    houses: Option<Houses>,
     home: Option<Home>,
     cameras: Vec<Value>,
 }
 
 impl Filmed {
+    /// The seed of a home's house; `None` where there is no such home.
+    fn seed_of(&self, number: u64) -> Option<u64> {
+        match &self.houses {
+            Some(houses) => houses.seeds().get(usize::try_from(number).ok()?).copied(),
+            None => Some(number.saturating_add(1)),
+        }
+    }
+
     fn answer(&mut self, request: &Value) -> Value {
         let done = self.act(request);
         let (success, fields) =
@@ -102,7 +133,7 @@ impl Filmed {
             "clear" => drop(self.home.as_ref()?),
             "idle" | "add_character" => {}
             "environment" => {
-                self.home = Some(Home::new(int(0).unwrap_or(0)));
+                self.home = Some(Home::of(self.seed_of(int(0).unwrap_or(0))?));
                 self.cameras.clear();
             }
             "environment_graph" => return Some(json!({ "message": self.home.as_ref()?.graph().to_string() })),

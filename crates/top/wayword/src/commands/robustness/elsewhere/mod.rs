@@ -4,7 +4,11 @@ mod film;
 #[cfg(feature = "habitat")]
 mod houses;
 
-use super::{base::Base, world::World};
+use super::{
+    base::Base,
+    names::{self, Names},
+    world::World,
+};
 use crate::{
     error::Error,
     platforms::{self, PLATFORMS, Remembering},
@@ -33,25 +37,6 @@ pub(super) fn refusal(spec: &str) -> Option<String> {
     }
 }
 
-/// The names that scenes of a run have elsewhere, as they were typed: `SCENE=NAME`.
-///
-/// # Errors
-/// When one is typed in another way, or a scene is named twice.
-pub(super) fn names(typed: &[String]) -> Result<BTreeMap<String, String>, Error> {
-    let mut names = BTreeMap::new();
-    for text in typed {
-        let parts = text.split_once('=').filter(|(scene, name)| !scene.is_empty() && !name.is_empty());
-        let Some((scene, name)) = parts else {
-            let hint = "write the run's scene and its name there, as in --scene-name house-3=home_2";
-            return Err(Error::usage(format!("--scene-name {text}: there is no SCENE=NAME"), hint));
-        };
-        if names.insert(scene.to_owned(), name.to_owned()).is_some() {
-            return Err(Error::usage(format!("--scene-name: {scene} is named twice"), "leave one out"));
-        }
-    }
-    Ok(names)
-}
-
 impl Elsewhere {
     /// Opens a platform. What it needs of the run is saved in a folder first, unless it is there. Its scenes have the names
     /// of the run's scenes, but where they are given other ones.
@@ -62,7 +47,7 @@ impl Elsewhere {
         spec: &str,
         base: &Base,
         world: &dyn Platform,
-        (out, names): (&FilePath, &BTreeMap<String, String>),
+        (out, names): (&FilePath, &Names),
     ) -> Result<Self, Error> {
         let Spec { name, data, at } = Spec::of(spec);
         if name == "recording" {
@@ -77,8 +62,9 @@ impl Elsewhere {
         let there = platform.scenes()?;
         let (mut scene_of, mut base_of) = (BTreeMap::new(), BTreeMap::new());
         for path in &base.paths {
-            let called = names.get(path.scene.as_str()).map_or(path.scene.as_str(), String::as_str);
-            let Some(scene) = there.iter().find(|scene| scene.as_str() == called) else {
+            let called = names::called(names, path.scene.as_str());
+            let Some(scene) = called.iter().find_map(|name| there.iter().find(|scene| scene.as_str() == *name)) else {
+                let called = called.join(" or ");
                 let problem =
                     format!("--change platform={spec}: it has no scene {called} for {} of the run", path.scene);
                 let hint = "name data that has all scenes of the run, or give the name of each there, as in --scene-name house-3=home_2";
