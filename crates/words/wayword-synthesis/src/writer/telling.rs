@@ -18,9 +18,11 @@ use wayword_language::text::word_count;
 
 /// A text may be longer or shorter than its style's by this, words.
 const SLACK: f64 = 2.0;
+/// A plan is near enough to its length within this, words.
+const OFF: f64 = 5.0;
 /// And no longer than so many times its words where many things are seen.
 const MOST: f64 = 1.1;
-/// A way is planned so often until a text copies nothing from the style's references.
+/// So many plans are made, until one has its length and copies nothing from the style's references.
 const PLANS: usize = 8;
 /// And words that are copied are replaced so often.
 const WORDINGS: usize = 24;
@@ -42,9 +44,8 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, dice: 
     let copies = &brief.profile.copies;
     let limit = brief.style.constraints.fewer_words_than.unwrap_or(usize::MAX);
     let mut best: Option<(usize, String)> = None;
-    for number in 0..PLANS {
-        let dice = dice.other(number);
-        let mut draft = Plan::of(brief, words, dice).worded(brief, task, dice);
+    for (plan, dice) in plans(brief, words as f64, dice) {
+        let mut draft = plan.worded(brief, task, dice);
         for _ in 0..WORDINGS {
             let (text, starts) = draft.text();
             let (copied, shared) = (copies.copied(&text, matter), copies.much(&text));
@@ -64,21 +65,31 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, dice: 
     best.map(|(_, text)| text).unwrap_or_default()
 }
 
+/// The plans of a text with what they draw, those first that come near to its length.
+fn plans(brief: &Brief<'_>, words: f64, dice: Dice) -> Vec<(Plan, Dice)> {
+    let numbered = (0..PLANS).map(|number| dice.other(number));
+    let mut plans: Vec<(Plan, Dice)> = numbered.map(|dice| (Plan::of(brief, words, dice), dice)).collect();
+    // Where some are near enough, the first one stays.
+    plans.sort_by_key(|(plan, _)| (plan.off - OFF).max(0.0).round() as u64);
+    plans
+}
+
 /// What a text says, clause by clause. It goes by the way alone: things come in where the plan has a place for them.
 struct Plan {
     clauses: Vec<Clause>,
     full_stop: bool,
+    /// How many words it is off its length, as far as is known without its things.
+    off: f64,
 }
 
 impl Plan {
     /// One of about so many words.
-    fn of(brief: &Brief<'_>, words: usize, dice: Dice) -> Self {
+    fn of(brief: &Brief<'_>, words: f64, dice: Dice) -> Self {
         let mut clauses = route::clauses(brief, dice);
         if !stands_still(brief.walk) {
             fill::offer_places(&mut clauses, brief, dice);
         }
         let mut lengths = Lengths::of(&brief.profile.way);
-        let words = words as f64;
         let mut is_long =
             |plan: &[Clause]| lengths.expected(plan) > words + SLACK || lengths.most(plan) > words * MOST + SLACK;
         while is_long(&clauses) && drop_least(&mut clauses, OPTIONAL) {}
@@ -91,7 +102,9 @@ impl Plan {
             }
             times += 1;
         }
-        Self { clauses, full_stop: dice.by(&["full stop"]).random_bool(brief.profile.full_stops.clamp(0.0, 1.0)) }
+        let over = lengths.most(&clauses) - words * MOST;
+        let off = (lengths.expected(&clauses) - words).abs().max(over);
+        Self { off, clauses, full_stop: dice.by(&["full stop"]).random_bool(brief.profile.full_stops.clamp(0.0, 1.0)) }
     }
 
     fn worded<'a>(&self, brief: &'a Brief<'_>, task: Option<&(String, String)>, dice: Dice) -> Draft<'a> {
