@@ -4,7 +4,7 @@ use super::{Brief, dice::Dice};
 use rand::Rng;
 use std::collections::BTreeMap;
 use wayword_checks::memory::Remembered;
-use wayword_core::{ObjectId, Side, Verdict};
+use wayword_core::{Side, Verdict};
 use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, kinds, normal, plural, thing};
 
 /// Chooses landmarks, each kind of thing once in a text.
@@ -174,7 +174,7 @@ impl<'a> Landmarks<'a> {
         let mut homes: BTreeMap<String, At<'_>> = BTreeMap::new();
         for seen in self.brief.memory.things.iter().filter(|seen| self.is_free(&seen.name)) {
             let Some(best) = self.best_spot(seen, spots) else { continue };
-            let kind = kinds(&seen.name).swap_remove(0);
+            let kind = kind(&seen.name);
             match homes.get_mut(&kind) {
                 Some(home) if !best.goes_before(home) => {}
                 Some(home) => *home = best,
@@ -230,9 +230,10 @@ impl<'a> Landmarks<'a> {
     /// What a thing is worth as the landmark that a search finds.
     fn worth(&self, seen: &Remembered, Search { frame, to, .. }: Search) -> f64 {
         // Now and then anything will do, so that texts differ.
-        let chance = if self.dice.at("rare", frame).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
+        let kind = kind(&seen.name);
+        let chance = if self.dice.by(&["rare", &kind]).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
         let ahead = if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
-        let mut drawn = self.dice.by(&["thing", &frame.to_string(), identity(seen)]);
+        let mut drawn = self.dice.by(&["thing", &kind]);
         self.score(seen, frame) + ahead + drawn.random_range(0.0..chance)
     }
 
@@ -322,9 +323,9 @@ impl<'a> Landmarks<'a> {
     }
 }
 
-/// What a thing draws by: the same whatever else is seen.
-fn identity(seen: &Remembered) -> &str {
-    seen.object.as_ref().map_or(&seen.name, ObjectId::as_str)
+/// The kind of a thing, by which it draws: the same from other frames, on other platforms, and whatever else is seen.
+fn kind(name: &str) -> String {
+    kinds(name).swap_remove(0)
 }
 
 /// Whether a name reads as a landmark: known as one, and not a room's or a list's name.

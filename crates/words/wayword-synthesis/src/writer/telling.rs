@@ -6,7 +6,7 @@ use super::{
     draft::Draft,
     landmarks::Landmarks,
     naming::Lengths,
-    route::{self, Clause, KEPT, carry_out, fill, stands_still, usable_room, with_stand_ins},
+    route::{self, Clause, KEPT, carry_out, fill, numbered, stands_still, usable_room, with_stand_ins},
     task,
 };
 use crate::style::way::Kind;
@@ -118,7 +118,7 @@ impl Plan {
         loop {
             let mut plan = clauses.clone();
             mend(&mut plan, brief);
-            let told = carry_out(&with_stand_ins(plan, brief.memory), brief, &landmarks, dice);
+            let told = carry_out(&numbered(with_stand_ins(plan, brief.memory)), brief, &landmarks, dice);
             let draft = Draft::of(told, task, self.full_stop, brief, dice);
             if word_count(&draft.text().0) < limit || !drop_least(&mut clauses, KEPT) {
                 return draft;

@@ -73,7 +73,8 @@ fn without_thing(clause: Clause) -> Vec<Clause> {
 
 /// A clause of the same place without what its thing would need.
 fn bare(clause: &Clause) -> Clause {
-    Clause { follows_offer: clause.follows_offer, ..Clause::new(clause.kind, clause.at, clause.weight) }
+    let (follows_offer, number) = (clause.follows_offer, clause.number);
+    Clause { follows_offer, number, ..Clause::new(clause.kind, clause.at, clause.weight) }
 }
 
 /// What a place says with its thing. `passed` places of the text come before it at which one may pass something.
@@ -84,7 +85,7 @@ fn with_thing(
     dice: Dice,
     passed: usize,
 ) -> Vec<Clause> {
-    let mut rng = dice.at("with", clause.at);
+    let mut rng = clause.drawn("with", dice);
     match role {
         Role::Turn => {
             let ahead = if thing.side == Some(Side::Ahead) { 1.8 } else { 0.0 };

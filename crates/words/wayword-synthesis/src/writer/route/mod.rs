@@ -16,6 +16,7 @@ pub(super) use offer::{Offer, Role, with_stand_ins};
 use super::{Brief, dice::Dice, landmarks::Landmark};
 use crate::{style::way::Kind, walk::Walk};
 use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeMap;
 use wayword_checks::memory::{Bend, Flight, Memory};
 use wayword_core::{Climb, Motion, Side, motion};
 use wayword_language::lexicon::room_name;
@@ -41,6 +42,8 @@ pub(super) struct Clause {
     pub(super) offer: Option<Offer>,
     /// Whether a clause for a thing may stand right before it, so that it cannot say how far that one goes.
     pub(super) follows_offer: bool,
+    /// How many clauses of its kind come before it in the plan, things left out.
+    number: usize,
 }
 
 /// Weight of what is never left out.
@@ -58,13 +61,15 @@ const WALKED_PAST: u8 = 2;
 const STOPPED_AT: u8 = 1;
 /// A hop longer than this is worth a clause, metres.
 const LONG_M: f64 = 3.0;
+/// Something may be told of every so many metres of a way without turns and doors.
+const STRETCH_M: f64 = 2.0;
 /// One stops in a doorway where the hop through it is no longer than this, metres.
 const DOORWAY_M: f64 = 2.2;
 
 impl Clause {
     fn new(kind: Kind, at: usize, weight: u8) -> Self {
         let (side, thing, room, from) = (None, None, None, None);
-        Self { kind, at, side, thing, room, from, weight, offer: None, follows_offer: false }
+        Self { kind, at, side, thing, room, from, weight, offer: None, follows_offer: false, number: 0 }
     }
 
     /// A clause that is there for a thing alone.
@@ -109,9 +114,16 @@ impl Clause {
         self
     }
 
-    /// What it draws for one purpose.
+    /// What it draws for one purpose: a clause that is there for a thing by its thing, and another by its place among those of
+    /// its kind. Frames have no part in it, so that other frames of the same way draw the same.
     pub(super) fn drawn(&self, purpose: &str, dice: Dice) -> ChaCha8Rng {
-        dice.by(&[purpose, &format!("{:?}", self.kind), &self.at.to_string()])
+        let kind = format!("{:?}", self.kind);
+        match &self.thing {
+            Some(thing) if matches!(self.kind, Kind::Pass | Kind::PassOnSide | Kind::To) => {
+                dice.by(&[purpose, &kind, &thing.name])
+            }
+            _ => dice.by(&[purpose, &kind, &self.number.to_string()]),
+        }
     }
 
     /// Whether it is a turn without a place.
@@ -137,6 +149,17 @@ pub(super) fn clauses(brief: &Brief<'_>, dice: Dice) -> Vec<Clause> {
     planner.clauses
 }
 
+/// Gives the clauses of a plan their places among those of their kinds.
+pub(super) fn numbered(mut plan: Vec<Clause>) -> Vec<Clause> {
+    let mut told: BTreeMap<Kind, usize> = BTreeMap::new();
+    for clause in plan.iter_mut().filter(|clause| !clause.is_offer()) {
+        let number = told.entry(clause.kind).or_default();
+        clause.number = *number;
+        *number += 1;
+    }
+    plan
+}
+
 struct Planner<'a> {
     brief: &'a Brief<'a>,
     memory: &'a Memory,
@@ -155,7 +178,7 @@ impl Planner<'_> {
         let last = self.memory.frames().saturating_sub(1);
         let mut at = self.leave_at_once().unwrap_or(0);
         while at < last {
-            self.rng = self.dice.at("step", at);
+            self.rng = self.dice.by(&["step", &self.step(at)]);
             let bend = self.bend_at(at);
             let opening = self.memory.openings.iter().find(|opening| opening.before == at);
             if let Some(flight) = self.memory.flights.iter().find(|flight| flight.from == at) {
@@ -176,6 +199,24 @@ impl Planner<'_> {
                 (None, None) => self.onwards(at),
             }
             at += 1;
+        }
+    }
+
+    /// What a step draws by: the turns and doors before it, and how far it is from the last of them.
+    fn step(&self, at: usize) -> String {
+        let bends = self.memory.bends.iter().filter(|bend| bend.first < at).count();
+        let openings = self.memory.openings.iter().filter(|opening| opening.before < at).count();
+        format!("{bends} {openings} {}", self.stretch(at))
+    }
+
+    /// In which stretch of a way without turns and doors a frame lies, from 0. Of an unknown motion each hop is one.
+    fn stretch(&self, at: usize) -> usize {
+        let bends = self.memory.bends.iter().map(|bend| bend.first).filter(|first| *first <= at);
+        let doors = self.memory.openings.iter().map(|opening| opening.behind).filter(|behind| *behind <= at);
+        let from = bends.chain(doors).max().unwrap_or(0);
+        match self.brief.walk.path.motion.is_known() {
+            true => (self.brief.walk.walked_m(from, at) / STRETCH_M) as usize,
+            false => at - from,
         }
     }
 

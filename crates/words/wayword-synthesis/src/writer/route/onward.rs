@@ -14,6 +14,9 @@ impl Planner<'_> {
 
     /// A hop within a room: past a thing, along the hallway, or at least straight on.
     pub(super) fn onwards(&mut self, at: usize) {
+        if at > 0 && self.stretch(at) > 0 && self.stretch(at) == self.stretch(at - 1) {
+            return;
+        }
         let is_last = at + 2 >= self.memory.frames();
         let often = if is_last { 0.3 } else { 0.5 };
         let offers = self.rng.random_bool(often) || self.is_first_hop_of_untold_turn(at);
@@ -24,7 +27,8 @@ impl Planner<'_> {
             let weight = if self.brief.walk.walked_m(at, left) >= LONG_M { MAIN } else { SIDE };
             return self.along(at, &hall, weight);
         }
-        let is_long = self.brief.walk.moves.get(at).is_none_or(|step| step.distance_m >= LONG_M);
+        let left = self.memory.stay(at).map_or(at + 1, |stay| stay.left);
+        let is_long = self.brief.walk.moves.is_empty() || self.brief.walk.walked_m(at, left) >= LONG_M;
         let goes_straight = is_long && !self.along && self.rng.random_bool(0.25);
         if offers {
             let offer = Offer { or_straight: goes_straight, ..Offer::new(Role::Onward, at + 1) };

@@ -115,7 +115,10 @@ impl Planner<'_> {
             return false;
         }
         let brief = self.brief;
-        let from_an_end = bend.first.min(self.memory.frames().saturating_sub(1).saturating_sub(bend.last));
+        let on_the_way: Vec<usize> =
+            self.memory.bends.iter().filter(|bend| bend.first > 0).map(|bend| bend.last).collect();
+        let place = on_the_way.iter().position(|last| *last == bend.last);
+        let from_an_end = place.map_or(0, |place| 1 + place.min(on_the_way.len() - 1 - place));
         let names = ["left out", &brief.style.name, &brief.walk.path.id, &from_an_end.to_string()];
         rng(brief.seed, &names).random_bool(LEFT_OUT)
     }
