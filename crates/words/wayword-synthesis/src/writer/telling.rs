@@ -6,7 +6,7 @@ use super::{
     draft::Draft,
     landmarks::Landmarks,
     naming::Lengths,
-    route::{self, Clause, KEPT, carry_out, fill, numbered, stands_still, usable_room, with_stand_ins},
+    route::{self, Clause, KEPT, LONG_M, carry_out, fill, numbered, stands_still, usable_room, with_stand_ins},
     task,
 };
 use crate::style::way::Kind;
@@ -169,22 +169,26 @@ fn mend(clauses: &mut Vec<Clause>, brief: &Brief<'_>) {
         let onward = clauses[at].straight_on();
         clauses.insert(at, onward);
     }
-    bridge(clauses);
+    bridge(clauses, brief);
 }
 
-/// Of two turns in a row between which things may be told, the text says that one goes on where there are none.
-fn bridge(clauses: &mut [Clause]) {
-    let mut bare: Option<usize> = None;
-    for at in 0..clauses.len() {
-        if clauses[at].is_offer() {
-            continue;
+/// Where things may be told and there may be none, the text says that one goes on: between two turns in a row, and on a long way
+/// to the end of which nothing else is said.
+fn bridge(clauses: &mut [Clause], brief: &Brief<'_>) {
+    let told: Vec<usize> = (0..clauses.len()).filter(|at| !clauses[*at].is_offer()).collect();
+    let befores = std::iter::once(None).chain(told.iter().map(|at| Some(*at)));
+    let pairs: Vec<(Option<usize>, usize)> = befores.zip(told.iter().copied()).collect();
+    for (before, at) in pairs {
+        let is_end = at + 1 == clauses.len();
+        let needs = match before {
+            None => is_end,
+            Some(before) if is_end => brief.walk.walked_m(clauses[before].at, clauses[at].at) >= LONG_M,
+            Some(before) => clauses[before].is_bare() && clauses[at].is_bare(),
+        };
+        let first = before.map_or(0, |before| before + 1);
+        if let Some(between) = clauses[first..at].first_mut().filter(|_| needs) {
+            between.or_straight_on();
         }
-        if let Some(before) = bare.filter(|_| clauses[at].is_bare()) {
-            if let Some(between) = clauses[before + 1..at].first_mut() {
-                between.or_straight_on();
-            }
-        }
-        bare = clauses[at].is_bare().then_some(at);
     }
 }
 

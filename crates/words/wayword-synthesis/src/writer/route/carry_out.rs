@@ -25,7 +25,6 @@ pub(in crate::writer) fn carry_out(
         let clause = Clause { follows_offer, ..clause.clone() };
         follows_offer = clause.is_offer();
         match (clause.offer.as_ref().map(|offer| offer.role), thing) {
-            (Some(Role::Onward), None) if !told_straight(&clause) => {}
             (Some(role), Some(thing)) => told.extend(with_thing(clause, (role, thing), brief, dice, passed)),
             (Some(_), None) => told.extend(without_thing(clause)),
             (None, _) => told.push(clause),
@@ -60,13 +59,10 @@ fn is_own(clause: &Clause) -> bool {
     clause.is_offer() && clause.offer.as_ref().is_some_and(|offer| offer.stands_in_for.is_none())
 }
 
-fn told_straight(clause: &Clause) -> bool {
-    clause.offer.as_ref().is_some_and(|offer| offer.or_straight)
-}
-
 /// What a place without a thing says.
 fn without_thing(clause: Clause) -> Vec<Clause> {
-    let straight = told_straight(&clause).then(|| Clause { kind: Kind::Straight, ..bare(&clause) });
+    let is_straight = clause.offer.as_ref().is_some_and(|offer| offer.or_straight);
+    let straight = is_straight.then(|| Clause { kind: Kind::Straight, ..bare(&clause) });
     let own = (!clause.is_offer()).then_some(clause);
     straight.into_iter().chain(own).collect()
 }

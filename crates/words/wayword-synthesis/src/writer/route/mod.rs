@@ -60,7 +60,7 @@ const WALKED_PAST: u8 = 2;
 /// Least salience of one that is stopped at.
 const STOPPED_AT: u8 = 1;
 /// A hop longer than this is worth a clause, metres.
-const LONG_M: f64 = 3.0;
+pub(super) const LONG_M: f64 = 3.0;
 /// Something may be told of every so many metres of a way without turns and doors.
 const STRETCH_M: f64 = 2.0;
 /// One stops in a doorway where the hop through it is no longer than this, metres.

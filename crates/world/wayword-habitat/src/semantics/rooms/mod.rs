@@ -5,8 +5,6 @@
 //! where they are not sure.
 
 mod hallway;
-#[cfg(test)]
-mod houses;
 mod rules;
 
 pub(super) use rules::part;

@@ -1,5 +1,7 @@
 //! Made-up rooms: floors and things, and where which room is.
 
+mod houses;
+
 use super::*;
 use wayword_core::ObjectId;
 

@@ -1,7 +1,7 @@
 //! How well the names agree with the plans of generated houses, which are saved with numbers of rooms and read back.
 //! `WAYWORD_ROOM_HOUSES=40` measures more houses; with `--nocapture` the figures are printed.
 
-use super::super::{SemanticFiles, Semantics, load};
+use super::super::super::{SemanticFiles, Semantics, load};
 use crate::scene::Stage;
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Frame, Gaze, Heading, Platform, Pose};
