@@ -26,7 +26,11 @@ pub(in crate::writer) fn carry_out(
         follows_offer = clause.is_offer();
         match (clause.offer.as_ref().map(|offer| offer.role), thing) {
             (Some(role), Some(thing)) => told.extend(with_thing(clause, (role, thing), brief, dice, passed)),
-            (Some(_), None) => told.extend(without_thing(clause)),
+            (Some(_), None) => {
+                let goes_straight = told.last().is_some_and(|before: &Clause| before.kind == Kind::Straight);
+                let new = without_thing(clause).into_iter();
+                told.extend(new.skip_while(|clause| goes_straight && clause.kind == Kind::Straight));
+            }
             (None, _) => told.push(clause),
         }
         passed += usize::from(follows_offer);
