@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use wayword_core::{Climb, Mention, MentionKind, Side};
 use wayword_language::{
-    lexicon::{normal, room_name},
+    lexicon::{Class, is_room, normal, room_name, thing},
     reading::{What, read},
 };
 
@@ -13,7 +13,7 @@ use wayword_language::{
 pub struct Facts {
     /// The landmarks that have evidence: name in normal spelling, and frame.
     pub landmarks: Vec<(String, usize)>,
-    /// The turns; `Behind` is a turn around.
+    /// The turns, also those told as a door or room to a side; `Behind` is a turn around.
     pub turns: Vec<Side>,
     /// The rooms that have evidence, by their usual names; those in a row that are equal are one.
     pub rooms: Vec<String>,
@@ -47,8 +47,8 @@ impl Facts {
         rooms.dedup();
         let (mut turns, mut floors) = (Vec::new(), Vec::new());
         for event in read(text, &BTreeSet::new()).claims().events {
+            turns.extend(turn_told(&event.what));
             match event.what {
-                What::Turn(side) => turns.push(side),
                 What::Climb(climb) | What::Storey(climb) => floors.extend(Floor::of(climb)),
                 What::Floor(floor) => floors.push(Floor::Storey(floor.number.unwrap_or(0))),
                 _ => {}
@@ -56,6 +56,23 @@ impl Facts {
         }
         Self { landmarks: landmarks.collect(), turns, rooms, floors }
     }
+}
+
+/// The turn that an event tells: "the door on the left" is one, too.
+pub(crate) fn turn_told(what: &What) -> Option<Side> {
+    match what {
+        What::Turn(side) => Some(*side),
+        What::Place(place) => place.side.filter(|_| goes_through(&place.name)),
+        _ => None,
+    }
+}
+
+/// Openings that are no doors.
+const DOORWAYS: [&str; 4] = ["doorway", "opening", "entrance", "exit"];
+
+/// Whether one goes through what has that name, or into it.
+fn goes_through(name: &str) -> bool {
+    is_room(name) || DOORWAYS.contains(&name) || thing(name).is_some_and(|thing| thing.class == Class::Door)
 }
 
 impl Floor {
@@ -71,6 +88,13 @@ impl Floor {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_door_on_a_side_is_a_turn() {
+        let turns = |text: &str| Facts::of(text, &[], |frame| frame).turns;
+        assert_eq!(turns("Take the door on your right and pass the sofa on the left."), [Side::Right]);
+        assert_eq!(turns("Enter the bedroom on the left."), [Side::Left]);
+    }
 
     #[test]
     fn a_text_states_landmarks_turns_rooms_and_floors() {

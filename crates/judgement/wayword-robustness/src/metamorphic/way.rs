@@ -1,11 +1,12 @@
 //! Paths that are walked the other way round.
 
 use super::{Outcome, Written};
+use crate::facts::turn_told;
 use std::collections::BTreeSet;
 use wayword_core::{Climb, Mention, Side};
 use wayword_language::{
-    lexicon::{Class, is_room, room_name, thing},
-    reading::{Place, What, read},
+    lexicon::room_name,
+    reading::{What, read},
 };
 
 /// Back along the path one turns as often, to the other sides in reverse order; rooms and floors that both texts tell once come
@@ -61,11 +62,9 @@ impl Told {
     fn of(written: Written<'_>) -> Self {
         let (mut told, mut stops) = (Self::default(), false);
         for event in read(written.text, &BTreeSet::new()).events.into_iter().filter(|event| !event.denied) {
+            told.turns.extend(turn_told(&event.what));
             match event.what {
                 What::Stop => stops = true,
-                What::Turn(side) => told.turns.push(side),
-                // "Take the door on the left" is a turn, too.
-                What::Place(Place { side: Some(side), ref name, .. }) if goes_through(name) => told.turns.push(side),
                 What::Climb(climb) => told.climbs.push(climb),
                 What::Floor(floor) => told.floors.extend(floor.number.map(|number| number.to_string())),
                 What::Place(place) if place.is_room => {
@@ -84,14 +83,6 @@ impl Told {
         }
         told
     }
-}
-
-/// Openings that are no doors.
-const DOORWAYS: [&str; 4] = ["doorway", "opening", "entrance", "exit"];
-
-/// Whether one goes through what has that name, or into it.
-fn goes_through(name: &str) -> bool {
-    is_room(name) || DOORWAYS.contains(&name) || thing(name).is_some_and(|thing| thing.class == Class::Door)
 }
 
 /// The rooms that both texts tell once, as either has them. Two of one name between which one passes another room are two rooms.
