@@ -318,10 +318,10 @@ fn found(
     });
     let roles = &base.settings.roles;
     let styles = base.styles.iter().map(|style| figures::of_style(base, &style.style.name, changes, lines, drawing));
-    let sees = eye.map_or_else(|| format!("{} sees", roles.see), |eye| eye::said(&eye));
+    let sees = eye.map_or_else(|| format!("Who sees: {}", roles.see), |eye| eye::said(&eye));
     Results {
         platform: base.settings.platform.clone(),
-        roles: format!("{sees}; {} writes", roles.write),
+        roles: format!("{sees}; who writes: {}", roles.write),
         paths: base.paths.len(),
         scenes: base.paths.iter().map(|path| &path.scene).collect::<BTreeSet<_>>().len(),
         again: base.again(texts),
