@@ -172,7 +172,7 @@ impl<'a> Landmarks<'a> {
     /// other things there are, and each spot tells the best of its own: a thing that comes or goes changes no other spot.
     pub(super) fn at(&self, spots: &[Spot]) -> Vec<Option<Landmark>> {
         let mut homes: BTreeMap<String, At<'_>> = BTreeMap::new();
-        for seen in self.brief.memory.things.iter().filter(|seen| self.is_free(&seen.name)) {
+        for seen in &self.brief.memory.things {
             let Some(best) = self.best_spot(seen, spots) else { continue };
             let kind = kind(&seen.name);
             match homes.get_mut(&kind) {
@@ -229,8 +229,8 @@ impl<'a> Landmarks<'a> {
 
     /// What a thing is worth as the landmark that a search finds.
     fn worth(&self, seen: &Remembered, Search { frame, to, .. }: Search) -> f64 {
-        // Now and then anything will do, so that texts differ.
         let kind = kind(&seen.name);
+        // Now and then anything will do, so that texts differ.
         let chance = if self.dice.by(&["rare", &kind]).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
         let ahead = if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
         let mut drawn = self.dice.by(&["thing", &kind]);

@@ -233,6 +233,7 @@ fn make(
     let _graceful = interrupt::finish_first(calls);
     let workers = calls.map_or_else(cores, Calls::workers);
     let arms = Arm::of(changes);
+    let names = names::of(&args.scene_name)?;
     let bar = output.progress(arms.len() * base.paths.len(), "texts");
     let mut failed = 0;
     let mut unchanged = Unchanged::new();
@@ -242,7 +243,7 @@ fn make(
         let left: Vec<&Path> = base.paths.iter().filter(|path| !journal.has(&key(&arm.id(), &path.id))).collect();
         let elsewhere = match arm {
             Arm::Changed(Change::Platform(spec)) if !left.is_empty() => {
-                Some(Elsewhere::open(spec, base, platform, (out, &names::of(&args.scene_name)?))?)
+                Some(Elsewhere::open(spec, base, platform, (out, &names))?)
             }
             _ => None,
         };
