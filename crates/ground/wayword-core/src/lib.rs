@@ -53,7 +53,9 @@ pub use id::{ObjectId, SceneId, ViewpointId};
 pub use image::Image;
 pub use instruction::{Chosen, ChosenBy, Instruction, LONGEST_TEXT_BYTES, Mention, MentionKind, Provenance};
 pub use label::Label;
-pub use model::{Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling, Schema};
+pub use model::{
+    Finish, LanguageModel, Message, ModelError, Reply, Request, Role, Sampling, Schema, Tool, Usage, tool_line,
+};
 pub use motion::{Climb, Motion, Move, Turn};
 pub use observation::{Look, Observation};
 pub use path::{Description, Distinction, Frame, Path, Relation, Target};

@@ -49,6 +49,20 @@ pub struct Request {
     pub replicate: u32,
     /// The form of the reply, where it is to be JSON. Services that can hold a model to it do.
     pub schema: Option<Schema>,
+    /// The tools that the model may call; empty for none. The prompt has to say how to call them in words, because not
+    /// every service has tool calls.
+    pub tools: &'static [Tool],
+}
+
+/// A tool that a model may call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tool {
+    /// Its name: letters and underscores.
+    pub name: &'static str,
+    /// What it does, for the model.
+    pub does: &'static str,
+    /// The form of its arguments: the JSON Schema of an object, as text.
+    pub arguments: &'static str,
 }
 
 /// A form of JSON, in the words of JSON Schema.
@@ -61,12 +75,35 @@ pub struct Schema {
 }
 
 /// What a model said.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Reply {
-    /// Its words, without any reasoning that the service marks as such.
+    /// Its words, without any reasoning that the service marks as such. After them, each call of a tool is a line of its
+    /// own, as [`tool_line`] makes it: a model behind a service without tool calls writes the same line itself.
     pub text: String,
     /// Why it ended.
     pub finish: Finish,
+    /// What it took; `None` where nothing counts that.
+    pub usage: Option<Usage>,
+}
+
+/// What a call of a model took.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Usage {
+    /// Tokens of the request.
+    pub tokens_in: u64,
+    /// Tokens of the reply.
+    pub tokens_out: u64,
+    /// US dollars; `None` where the price is not known.
+    pub usd: Option<f64>,
+    /// Seconds from sending the request to the last byte of the reply, when it was made.
+    pub seconds: f64,
+}
+
+/// The line of a call of a tool: its name, a space, and its arguments as JSON without line breaks.
+#[must_use]
+pub fn tool_line(name: &str, arguments: &str) -> String {
+    let one_line = |text: &str| text.split(['\n', '\r']).collect::<Vec<_>>().join(" ");
+    format!("{} {}", one_line(name), one_line(arguments))
 }
 
 /// Why a reply ended.

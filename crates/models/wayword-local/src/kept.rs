@@ -141,7 +141,7 @@ fn answer(text: String, begun: Instant) -> Answer {
 
 fn reply(answer: Answer) -> Reply {
     let finish = if answer.finish == "length" { Finish::Length } else { Finish::Stop };
-    Reply { text: answer.text, finish }
+    Reply { text: answer.text, finish, usage: None }
 }
 
 /// A picture's name in the ledger.

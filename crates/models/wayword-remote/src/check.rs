@@ -194,7 +194,7 @@ fn price(model: &RemoteModel, findings: &mut Vec<Finding>) {
 
 fn ask(model: &dyn LanguageModel, message: Message) -> Result<String, String> {
     let sampling = Sampling { temperature: 0.0, max_tokens: MAX_TOKENS, seed: 0 };
-    let request = Request { messages: vec![message], sampling, replicate: by_the_clock(), schema: None };
+    let request = Request { messages: vec![message], sampling, replicate: by_the_clock(), schema: None, tools: &[] };
     let mut replies = model.complete(&[request]);
     replies
         .pop()

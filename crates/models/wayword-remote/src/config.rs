@@ -71,6 +71,8 @@ pub struct ProviderConfig {
     pub omit: Option<Vec<String>>,
     /// How it is told that a reply is to be JSON of some form.
     pub json: Option<Json>,
+    /// Whether its models can call tools.
+    pub tools: Option<bool>,
     /// Most requests per minute.
     pub requests_per_minute: Option<f64>,
     /// Most tokens per minute, in and out.
@@ -134,7 +136,7 @@ impl ProviderConfig {
             ($($field:ident),*) => { $(if other.$field.is_some() { self.$field.clone_from(&other.$field); })* };
         }
         take!(dialect, base_url, key_env, local, blind, max_tokens_field, seed_field, extra, omit);
-        take!(requests_per_minute, tokens_per_minute, advertises_requests_per_day, json);
+        take!(requests_per_minute, tokens_per_minute, advertises_requests_per_day, json, tools);
         self
     }
 }

@@ -16,7 +16,7 @@ use std::{
     },
     thread,
 };
-use wayword_core::{Finish, LanguageModel, Message, ModelError, Reply, Request};
+use wayword_core::{Finish, LanguageModel, Message, ModelError, Reply, Request, Tool, Usage};
 use wayword_ledger::{Answer, Call, OnceError, Refused, Run};
 
 /// A model behind HTTP. Each of its calls is made once and kept in the ledger.
@@ -51,6 +51,7 @@ impl RemoteModel {
                 lines: &lines,
                 sampling: &request.sampling,
                 schema: request.schema,
+                tools: request.tools,
             };
             let wire = self.endpoint.provider.dialect.to_wire(asked);
             let wire = wire.map_err(|reason| Unanswered::Failed(reason.to_owned()))?;
@@ -114,6 +115,10 @@ impl RemoteModel {
                 json!({ "name": schema.name, "way": format!("{:?}", provider.json), "json": schema.json }),
             );
         }
+        if provider.tools && !request.tools.is_empty() {
+            let tool = |tool: &Tool| json!({ "name": tool.name, "does": tool.does, "arguments": tool.arguments });
+            asked.insert("tools".to_owned(), request.tools.iter().map(tool).collect());
+        }
         if !provider.extra.is_empty() {
             asked.insert("extra".to_owned(), provider.extra.clone().into());
         }
@@ -156,7 +161,9 @@ fn stopped(refused: &Refused) -> ModelError {
 }
 
 fn size(request: &Request) -> Size {
-    let chars = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16).sum();
+    let of_tools = |tool: &Tool| (tool.name.len() + tool.does.len() + tool.arguments.len()) as u64 + 16;
+    let of_messages = request.messages.iter().map(|message| message.text.chars().count() as u64 + 16);
+    let chars = of_messages.chain(request.tools.iter().map(of_tools)).sum();
     let other_bytes = |message: &Message| message.text.bytes().filter(|byte| !byte.is_ascii()).count() as u64;
     let other_bytes = request.messages.iter().map(other_bytes).sum();
     let pictures = request.messages.iter().map(|message| message.images.len() as u64).sum();
@@ -165,7 +172,9 @@ fn size(request: &Request) -> Size {
 
 fn reply(answer: Answer) -> Reply {
     let finish = if answer.finish == "length" { Finish::Length } else { Finish::Stop };
-    Reply { text: answer.text, finish }
+    let Answer { text, tokens_in, tokens_out, usd, latency_ms, .. } = answer;
+    let usage = Usage { tokens_in, tokens_out, usd, seconds: latency_ms as f64 / 1e3 };
+    Reply { text, finish, usage: Some(usage) }
 }
 
 impl LanguageModel for RemoteModel {
@@ -224,7 +233,7 @@ mod tests {
         {
             let text = text.repeat(100);
             let (bytes, messages) = (text.len() as u64, vec![Message::user(text)]);
-            let size = size(&Request { messages, sampling: sampling.clone(), replicate: 0, schema: None });
+            let size = size(&Request { messages, sampling: sampling.clone(), replicate: 0, schema: None, tools: &[] });
             assert!(size.most_tokens_in(0) >= bytes, "{size:?}");
         }
     }

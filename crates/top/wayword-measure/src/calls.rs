@@ -64,7 +64,7 @@ pub(super) fn words(number: usize) -> Request {
 
 fn request(message: Message) -> Request {
     let sampling = Sampling { temperature: 0.0, max_tokens: 60, seed: 0 };
-    Request { messages: vec![message], sampling, replicate: 0, schema: None }
+    Request { messages: vec![message], sampling, replicate: 0, schema: None, tools: &[] }
 }
 
 /// Calls between two looks at the memory.

@@ -42,6 +42,7 @@ impl ByModel {
             sampling: SAMPLING,
             replicate,
             schema: None,
+            tools: &[],
         };
         let requests: Vec<Request> = prompts.iter().map(request).collect();
         let mut replies = self.model.complete(&requests).into_iter();
@@ -132,7 +133,7 @@ mod tests {
             let mut replies = self.replies.lock().unwrap();
             let reply = |text: &str| match text {
                 "budget" => Err(ModelError::Stopped { reason: "spent".into(), hint: "wait".into(), is_lost: false }),
-                text => Ok(Reply { text: text.to_owned(), finish: Finish::Stop }),
+                text => Ok(Reply { text: text.to_owned(), finish: Finish::Stop, usage: None }),
             };
             requests.iter().map_while(|_| replies.pop()).map(reply).collect()
         }

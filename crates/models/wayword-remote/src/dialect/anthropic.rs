@@ -1,10 +1,10 @@
 //! Anthropic's messages (<https://docs.anthropic.com/en/api/messages>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, content};
+use super::{Asked, End, Heard, Line, Missing, Wire, called, content};
 use crate::picture::Picture;
 use serde_json::{Map, Value, json};
 use std::sync::Arc;
-use wayword_core::Role;
+use wayword_core::{Role, Tool};
 
 /// The version of the API that this file implements.
 pub(super) const VERSION: &str = "2023-06-01";
@@ -25,7 +25,20 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
     if asked.provider.sends("temperature") {
         body.insert("temperature".to_owned(), asked.sampling.temperature.clamp(0.0, 1.0).into());
     }
+    let tool = |(tool, arguments): (&'static Tool, Value)| json!({ "name": tool.name, "description": tool.does, "input_schema": arguments });
+    let tools: Vec<Value> = asked.tools().into_iter().map(tool).collect();
+    if !tools.is_empty() {
+        body.insert("tools".to_owned(), tools.into());
+        body.insert("tool_choice".to_owned(), json!({ "type": "any" }));
+    }
     Wire { path: "/messages".to_owned(), body: body.into() }
+}
+
+/// The tools that a reply calls, each as a line.
+pub(super) fn tool_calls(body: &Value) -> Vec<String> {
+    let parts = body.get("content").and_then(Value::as_array).into_iter().flatten();
+    let calls = parts.filter(|part| part.get("type").and_then(Value::as_str) == Some("tool_use"));
+    calls.filter_map(|part| called(part.get("name"), part.get("input"))).collect()
 }
 
 fn message(line: &Line) -> Value {

@@ -1,9 +1,9 @@
 //! OpenAI's chat completions (<https://platform.openai.com/docs/api-reference/chat>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, content, seed};
+use super::{Asked, End, Heard, Line, Missing, Wire, called, content, seed};
 use crate::Json;
 use serde_json::{Map, Value, json};
-use wayword_core::Role;
+use wayword_core::{Role, Tool};
 
 /// Turns a request into a body for this API.
 pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
@@ -20,7 +20,37 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
         };
         body.insert("response_format".to_owned(), format);
     }
+    let tools = tools(asked);
+    if !tools.is_empty() {
+        body.insert("tools".to_owned(), tools.into());
+        body.insert("tool_choice".to_owned(), "required".into());
+    }
     Wire { path: "/chat/completions".to_owned(), body: body.into() }
+}
+
+/// The tools, in the form that this dialect and Ollama's share.
+pub(super) fn tools(asked: Asked<'_>) -> Vec<Value> {
+    let tool = |(tool, arguments): (&'static Tool, Value)| {
+        let function = json!({ "name": tool.name, "description": tool.does, "parameters": arguments });
+        json!({ "type": "function", "function": function })
+    };
+    asked.tools().into_iter().map(tool).collect()
+}
+
+/// The tools that a reply calls, each as a line.
+pub(super) fn tool_calls(body: &Value) -> Vec<String> {
+    let message = body.get("choices").and_then(|choices| choices.get(0)?.get("message"));
+    message.map(calls_of).unwrap_or_default()
+}
+
+/// The same of a message, in the form that this dialect and Ollama's share.
+pub(super) fn calls_of(message: &Value) -> Vec<String> {
+    let calls = message.get("tool_calls").and_then(Value::as_array);
+    let function = |call: &Value| {
+        let function = call.get("function")?;
+        called(function.get("name"), function.get("arguments"))
+    };
+    calls.into_iter().flatten().filter_map(function).collect()
 }
 
 /// The sampling fields that this dialect and the completions share.

@@ -1,9 +1,9 @@
 //! Gemini's `generateContent` (<https://ai.google.dev/api/generate-content>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, seed};
+use super::{Asked, End, Heard, Line, Missing, Wire, called, seed};
 use crate::Json;
 use serde_json::{Map, Value, json};
-use wayword_core::Role;
+use wayword_core::{Role, Tool};
 
 /// Turns a request into a body for this API.
 pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
@@ -34,6 +34,15 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
         }
     }
     body.insert("generationConfig".to_owned(), generation.into());
+    let tool = |(tool, mut arguments): (&'static Tool, Value)| {
+        to_open_api(&mut arguments);
+        json!({ "name": tool.name, "description": tool.does, "parameters": arguments })
+    };
+    let tools: Vec<Value> = asked.tools().into_iter().map(tool).collect();
+    if !tools.is_empty() {
+        body.insert("tools".to_owned(), json!([{ "functionDeclarations": tools }]));
+        body.insert("toolConfig".to_owned(), json!({ "functionCallingConfig": { "mode": "ANY" } }));
+    }
     Wire { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
 }
 
@@ -65,6 +74,14 @@ fn in_path(model: &str) -> String {
     let keep = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
     let model = model.strip_prefix("models/").unwrap_or(model);
     model.bytes().map(|byte| if keep(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
+}
+
+/// The tools that a reply calls, each as a line.
+pub(super) fn tool_calls(body: &Value) -> Vec<String> {
+    let candidate = body.get("candidates").and_then(|all| all.get(0));
+    let parts = candidate.and_then(|candidate| candidate.get("content")?.get("parts")?.as_array());
+    let calls = parts.into_iter().flatten().filter_map(|part| part.get("functionCall"));
+    calls.filter_map(|call| called(call.get("name"), call.get("args"))).collect()
 }
 
 /// Reads a reply's body.

@@ -11,7 +11,7 @@ use crate::{Json, picture::Picture, provider::Provider};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::sync::Arc;
-use wayword_core::{Role, Sampling, Schema};
+use wayword_core::{Role, Sampling, Schema, Tool, tool_line};
 
 /// A service's API.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -47,6 +47,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) sampling: &'a Sampling,
     /// The form of the reply, where it is to be JSON.
     pub(crate) schema: Option<Schema>,
+    /// The tools that the model may call.
+    pub(crate) tools: &'static [Tool],
 }
 
 /// A request as it is sent, without the key.
@@ -60,7 +62,7 @@ pub(crate) struct Wire {
 /// A model's reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Heard {
-    /// The text, without the model's thinking.
+    /// The text, without the model's thinking. Each call of a tool is a line at its end.
     pub(crate) text: String,
     pub(crate) end: End,
     pub(crate) tokens_in: Option<u64>,
@@ -148,7 +150,16 @@ impl Dialect {
             Self::Gemini => gemini::from_wire(body),
             Self::Ollama => ollama::from_wire(body),
         }?;
-        heard.text = after_thinking(&heard.text).trim().to_owned();
+        let calls = match self {
+            Self::OpenAi => chat::tool_calls(body),
+            Self::Anthropic => anthropic::tool_calls(body),
+            Self::Gemini => gemini::tool_calls(body),
+            Self::Ollama => ollama::tool_calls(body),
+            Self::Completions => Vec::new(),
+        };
+        let words = after_thinking(&heard.text).trim();
+        let lines: Vec<&str> = [words].into_iter().chain(calls.iter().map(String::as_str)).collect();
+        heard.text = lines.join("\n").trim().to_owned();
         Ok(heard)
     }
 
@@ -226,7 +237,25 @@ fn seed(sampling: &Sampling) -> u64 {
     sampling.seed & 0x7fff_ffff
 }
 
+/// A call of a tool as a line. Some services give the arguments as an object, others as a text with JSON.
+fn called(name: Option<&Value>, arguments: Option<&Value>) -> Option<String> {
+    let arguments = match arguments {
+        Some(Value::String(text)) => {
+            serde_json::from_str::<Value>(text).map_or_else(|_| text.clone(), |value| value.to_string())
+        }
+        Some(value) => value.to_string(),
+        None => "{}".to_owned(),
+    };
+    Some(tool_line(name?.as_str()?, &arguments))
+}
+
 impl Asked<'_> {
+    /// Each tool that the service is told of, with the schema of its arguments; none where it has no tool calls.
+    fn tools(&self) -> Vec<(&'static Tool, Value)> {
+        let told = self.tools.iter().filter(|_| self.provider.tools);
+        told.filter_map(|tool| Some((tool, serde_json::from_str(tool.arguments).ok()?))).collect()
+    }
+
     /// What the service is told of the form of the reply: its way, the schema's name, and the schema.
     fn json(&self) -> Option<(Json, &'static str, Value)> {
         let schema = self.schema.filter(|_| self.provider.json != Json::Prompt)?;

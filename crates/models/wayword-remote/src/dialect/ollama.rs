@@ -1,6 +1,6 @@
 //! Ollama's own chat endpoint (<https://github.com/ollama/ollama/blob/main/docs/api.md>).
 
-use super::{Asked, End, Heard, Line, Missing, Wire, seed};
+use super::{Asked, End, Heard, Line, Missing, Wire, chat, seed};
 use crate::Json;
 use serde_json::{Map, Value, json};
 use wayword_core::Role;
@@ -23,7 +23,16 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
     if let Some((way, _, schema)) = asked.json() {
         body["format"] = if way == Json::Schema { schema } else { "json".into() };
     }
+    let tools = chat::tools(asked);
+    if !tools.is_empty() {
+        body["tools"] = tools.into();
+    }
     Wire { path: "/api/chat".to_owned(), body }
+}
+
+/// The tools that a reply calls, each as a line.
+pub(super) fn tool_calls(body: &Value) -> Vec<String> {
+    body.get("message").map(chat::calls_of).unwrap_or_default()
 }
 
 fn message(line: &Line) -> Value {

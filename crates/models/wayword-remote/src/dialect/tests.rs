@@ -25,7 +25,7 @@ fn conversation() -> Vec<Line> {
 
 fn wire(provider: &Provider, lines: &[Line]) -> Result<Wire, &'static str> {
     let sampling = Sampling { temperature: 0.5, max_tokens: 30, seed: u64::MAX };
-    provider.dialect.to_wire(Asked { provider, model: "m/1", lines, sampling: &sampling, schema: None })
+    provider.dialect.to_wire(Asked { provider, model: "m/1", lines, sampling: &sampling, schema: None, tools: &[] })
 }
 
 const SCHEMA: Schema = Schema {
@@ -37,7 +37,7 @@ const SCHEMA: Schema = Schema {
 fn body_for_json(provider: &Provider) -> Value {
     let sampling = Sampling { temperature: 0.0, max_tokens: 30, seed: 0 };
     let lines = [line(Role::User, "Hi.")];
-    let asked = Asked { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA) };
+    let asked = Asked { provider, model: "m", lines: &lines, sampling: &sampling, schema: Some(SCHEMA), tools: &[] };
     provider.dialect.to_wire(asked).unwrap().body
 }
 
@@ -65,6 +65,67 @@ fn others_get_the_form_by_the_prompt_alone() {
     }
     let strict = body_for_json(&provider("server", "[providers.server]\njson = \"schema\""));
     assert_eq!(strict["response_format"]["type"], "json_schema");
+}
+
+const TOOLS: &[Tool] = &[Tool {
+    name: "step",
+    does: "walks",
+    arguments: r#"{"type": "object", "properties": {"way": {"type": "integer"}}}"#,
+}];
+
+/// The body of a request to a model that may call a tool.
+fn body_with_tools(provider: &Provider) -> Value {
+    let sampling = Sampling { temperature: 0.0, max_tokens: 30, seed: 0 };
+    let lines = [line(Role::User, "Hi.")];
+    let asked = Asked { provider, model: "m", lines: &lines, sampling: &sampling, schema: None, tools: TOOLS };
+    provider.dialect.to_wire(asked).unwrap().body
+}
+
+#[test]
+fn each_service_is_told_of_tools_in_its_own_words() {
+    let arguments = json!({ "type": "object", "properties": { "way": { "type": "integer" } } });
+    let function = json!({ "name": "step", "description": "walks", "parameters": arguments });
+    let openai = body_with_tools(&provider("openai", ""));
+    assert_eq!(openai["tools"], json!([{ "type": "function", "function": function }]));
+    assert_eq!(openai["tool_choice"], "required");
+    let anthropic = body_with_tools(&provider("anthropic", ""));
+    assert_eq!(anthropic["tools"], json!([{ "name": "step", "description": "walks", "input_schema": arguments }]));
+    assert_eq!(anthropic["tool_choice"], json!({ "type": "any" }));
+    let gemini = body_with_tools(&provider("gemini", ""));
+    let declared = json!({ "type": "OBJECT", "properties": { "way": { "type": "INTEGER" } } });
+    let declared = json!({ "name": "step", "description": "walks", "parameters": declared });
+    assert_eq!(gemini["tools"], json!([{ "functionDeclarations": [declared] }]));
+    assert_eq!(gemini["toolConfig"]["functionCallingConfig"]["mode"], "ANY");
+    let ollama = body_with_tools(&provider("ollama", "[providers.ollama]\ntools = true"));
+    assert_eq!(ollama["tools"], openai["tools"]);
+    for without in ["ollama", "vllm", "server", "completions"] {
+        let body = body_with_tools(&provider(without, ""));
+        assert!(body.get("tools").is_none() && body.get("tool_choice").is_none(), "{body}");
+    }
+}
+
+#[test]
+fn a_call_of_a_tool_is_a_line_after_the_words() {
+    let heard = |dialect: Dialect, body: Value| dialect.heard(&body).unwrap().text;
+    let calls = json!([
+        { "id": "1", "type": "function", "function": { "name": "step", "arguments": "{\"way\":\n 2}" } },
+        { "id": "2", "type": "function", "function": { "name": "observe", "arguments": "not\nJSON" } },
+        { "id": "3", "type": "function", "function": { "arguments": "{}" } },
+    ]);
+    let message = json!({ "role": "assistant", "content": null, "tool_calls": calls });
+    let body = json!({ "choices": [{ "message": message, "finish_reason": "tool_calls" }] });
+    assert_eq!(heard(Dialect::OpenAi, body), "step {\"way\":2}\nobserve not JSON");
+    let body = json!({ "content": [
+        { "type": "text", "text": "I turn left." },
+        { "type": "tool_use", "id": "1", "name": "step", "input": { "way": 2 } },
+    ], "stop_reason": "tool_use" });
+    assert_eq!(heard(Dialect::Anthropic, body), "I turn left.\nstep {\"way\":2}");
+    let parts = json!([{ "functionCall": { "name": "stop", "args": { "why": "there" } } }]);
+    let body = json!({ "candidates": [{ "content": { "parts": parts }, "finishReason": "STOP" }] });
+    assert_eq!(heard(Dialect::Gemini, body), "stop {\"why\":\"there\"}");
+    let calls = json!([{ "function": { "name": "step", "arguments": { "way": 1 } } }]);
+    let message = json!({ "role": "assistant", "content": "<think>hm</think>", "tool_calls": calls });
+    assert_eq!(heard(Dialect::Ollama, json!({ "message": message })), "step {\"way\":1}");
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn services(server: &Server, settings: &str, run: &Run) -> Services {
 
 fn ask(text: &str) -> Request {
     let sampling = Sampling { temperature: 0.0, max_tokens: 20, seed: 1 };
-    Request { messages: vec![Message::user(text)], sampling, replicate: 0, schema: None }
+    Request { messages: vec![Message::user(text)], sampling, replicate: 0, schema: None, tools: &[] }
 }
 
 /// The reply to one question.

@@ -45,7 +45,7 @@ impl ModelAnswerer {
             AnswerForm::Json(schema) => (self.prompts.see(complaint(ask.question))?, OF_JSON, Some(schema)),
         };
         let message = Message::about(text, vec![image]);
-        Ok(Request { messages: vec![message], sampling, replicate: 0, schema })
+        Ok(Request { messages: vec![message], sampling, replicate: 0, schema, tools: &[] })
     }
 
     /// One reply per question, in their order.

@@ -64,7 +64,7 @@ mod tests {
             (Finish::Stop, "A bed. A lamp and a rug", "A bed. A lamp and a rug"),
             (Finish::Stop, " A rug 2.5 metres wide ", "A rug 2.5 metres wide"),
         ] {
-            assert_eq!(whole_sentences(&Reply { text: told.to_owned(), finish }), wanted);
+            assert_eq!(whole_sentences(&Reply { text: told.to_owned(), finish, usage: None }), wanted);
         }
     }
 }

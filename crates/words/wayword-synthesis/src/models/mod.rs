@@ -22,7 +22,7 @@ const PERCEPTION_SEED: u64 = 0;
 
 /// Sends one message to a model.
 fn say(model: &dyn LanguageModel, message: Message, sampling: Sampling) -> Result<Reply, ModelError> {
-    let request = Request { messages: vec![message], sampling, replicate: 0, schema: None };
+    let request = Request { messages: vec![message], sampling, replicate: 0, schema: None, tools: &[] };
     let nothing = || ModelError::Failed {
         model: model.name().to_owned(),
         reason: "it gave no result for the request".to_owned(),

@@ -16,7 +16,7 @@ pub(crate) struct Scripted {
 
 impl Scripted {
     pub(crate) fn new(replies: &[&str]) -> Arc<Self> {
-        let said = |text: &&str| Ok(Reply { text: (*text).to_owned(), finish: Finish::Stop });
+        let said = |text: &&str| Ok(Reply { text: (*text).to_owned(), finish: Finish::Stop, usage: None });
         Self::with(replies.iter().map(said).collect())
     }
 
@@ -102,7 +102,7 @@ fn a_model_asks_with_the_dialogue_so_far() {
 
 #[test]
 fn a_model_is_shown_the_picture_and_asked_again_where_it_is_cut_off() {
-    let cut = || Ok(Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length });
+    let cut = || Ok(Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length, usage: None });
     let model = Scripted::with(vec![cut(), cut()]);
     let eye = ModelAnswerer::new(model.clone(), prompts(), Manner::Chat);
     let image = Arc::new(Image::new(1, 1, vec![0; 3]).unwrap());
@@ -168,7 +168,7 @@ fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
 
 #[test]
 fn a_summary_that_was_cut_off_is_asked_again_and_then_kept_as_far_as_it_goes() {
-    let cut = || Ok(Reply { text: "A bedroom with a bed. In the".to_owned(), finish: Finish::Length });
+    let cut = || Ok(Reply { text: "A bedroom with a bed. In the".to_owned(), finish: Finish::Length, usage: None });
     let model = Scripted::with(vec![cut(), cut()]);
     let caption = ModelSummariser::new(model.clone(), prompts()).sum_up(&transcript(), "test").unwrap();
     assert_eq!((caption.text.as_str(), caption.by), ("A bedroom with a bed.", None));
