@@ -11,7 +11,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    Frame, Gaze, Grounder, Heading, ObjectId, Platform, Pose, SceneId, View, ViewpointGraph, ViewpointId,
+    DVec3, Frame, Gaze, Grounder, Heading, ObjectId, Platform, Pose, SceneId, View, ViewpointGraph, ViewpointId,
 };
 
 /// What an agent looks at one scene with: a platform, and a grounder that scores how well phrases fit what is seen.
@@ -94,6 +94,19 @@ impl<'a> AgentView<'a> {
     pub fn point(&self, viewpoint: &ViewpointId, phrase: &str) -> Result<Option<ObjectId>, WalkError> {
         let around = self.around(viewpoint)?;
         Ok(self.grounder.point(&around.views.each_ref(), phrase)?)
+    }
+
+    /// The four views of a node, from north clockwise.
+    ///
+    /// # Errors
+    /// When the platform gives no view.
+    pub(crate) fn views(&self, viewpoint: &ViewpointId) -> Result<[View; 4], WalkError> {
+        Ok(self.around(viewpoint)?.views.clone())
+    }
+
+    /// Where a node is, metres, world frame.
+    pub(crate) fn position(&self, viewpoint: &ViewpointId) -> DVec3 {
+        self.graph.position(viewpoint).unwrap_or_default()
     }
 
     /// The direction from one node to another; none where one stands above the other.

@@ -29,6 +29,9 @@ pub struct Walk {
     /// The object that it takes for the target, where its grounder can name one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<ObjectId>,
+    /// What it took, for an agent by a language model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effort: Option<Effort>,
 }
 
 /// A stop at a node, and what was decided there.
@@ -49,6 +52,45 @@ pub struct Step {
     pub told: Option<Told>,
     /// What it did then.
     pub choice: Choice,
+    /// Why, in the words of the model that decided; `None` where no model did, or it gave no reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// What a walk of an agent by a language model took. Calls of a model that only describes pictures are not counted.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Effort {
+    /// Calls of the model.
+    pub calls: usize,
+    /// How often it looked around.
+    pub looks: usize,
+    /// Tokens of all prompts.
+    pub tokens_in: u64,
+    /// Tokens of the largest prompt.
+    pub most_tokens_in: u64,
+    /// Tokens of all replies.
+    pub tokens_out: u64,
+    /// US dollars; `None` where a price is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub usd: Option<f64>,
+    /// Seconds that the model took, when the calls were made.
+    pub seconds: f64,
+    /// Replies of no use.
+    #[serde(default)]
+    pub useless: Useless,
+}
+
+/// Replies of no use, by what was wrong with them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Useless {
+    /// They call no tool.
+    pub no_call: usize,
+    /// They name a way that there is not.
+    pub no_way: usize,
+    /// They only look around once more where the agent has looked around.
+    pub idle: usize,
+    /// The service gave none: it refused, filtered or failed.
+    pub failed: usize,
 }
 
 /// One of the four views of a step: north, east, south, west. In files it is a list of its three values, because there
@@ -100,6 +142,14 @@ pub enum End {
     Cap,
     /// There was nowhere to go.
     DeadEnd,
+    /// It had made the most calls of its model that it may.
+    Calls,
+    /// Its model had cost what a walk may cost.
+    Money,
+    /// It took one hop over and over.
+    Circles,
+    /// Several replies of its model in a row were of no use.
+    Useless,
 }
 
 impl From<(f32, f32, usize)> for Scored {

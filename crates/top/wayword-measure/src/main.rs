@@ -33,6 +33,7 @@ mod study_coverage;
 mod sweep;
 mod tell_apart;
 mod texts;
+mod walker;
 
 use clap::{Parser, Subcommand};
 use std::{path::PathBuf, process::ExitCode};
@@ -78,6 +79,8 @@ enum What {
     /// Correlate critics of texts (words, BLEU-4, ROUGE-L, CIDEr-D, agreement with pictures) with the success of agents that walked by
     /// them, or with what people in a study did and said.
     Critics(critics::Flags),
+    /// Run `wayword compare` with the agent `tools`, whose model is a script: it walks the shortest way, at random, or it breaks.
+    Walker(Box<walker::Flags>),
     /// Show instructions of each style, picked by seed, beside what people wrote.
     Sample {
         /// Run folder.
@@ -239,6 +242,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::StudyCoverage(flags) => study_coverage::measure(&flags, output),
         What::FitFollower(flags) => fit_follower::measure(&flags, output),
         What::Coverage(flags) => coverage::measure(&flags, output),
+        What::Walker(flags) => walker::measure(*flags, output),
         What::Critics(flags) => critics::show(&flags, output),
         What::Variety { runs, show } => skeleton::measure(&runs, show, output),
         What::Calls { calls, latency_ms, concurrency } => calls::measure(calls, latency_ms, concurrency, output),

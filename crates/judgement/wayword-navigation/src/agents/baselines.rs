@@ -84,6 +84,7 @@ pub(super) fn follow(
         phrase: 0,
         told: None,
         choice,
+        reason: None,
     };
     while let Some(to) = (steps.len() < hops).then(|| next(&here, heading)).flatten() {
         steps.push(stand(&here, heading, Choice::Unseeing));
@@ -91,7 +92,7 @@ pub(super) fn follow(
         here = to;
     }
     steps.push(stand(&here, heading, Choice::Stop));
-    Walked { steps, end: End::Stopped, object: None }
+    Walked { steps, end: End::Stopped, object: None, effort: None }
 }
 
 /// The room that an instruction names last: the rooms before it are left or passed.

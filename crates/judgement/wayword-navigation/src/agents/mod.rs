@@ -6,15 +6,21 @@ mod parameters;
 mod phrases;
 mod policy;
 mod reader;
+mod tools;
 
 pub use baselines::{last_room_in, nearest_room, oracle, random, straight};
 pub use map_reader::{MapReader, Surveyed};
 pub use parameters::{Back, Parameters};
 pub use phrases::walk_by_phrases;
 pub use reader::walk_by_reading;
+pub use tools::{Describes, Limits, Looks, Tools, rehearse, walk_by_tools};
 pub use wayword_follower::Prior;
 
-use wayword_core::{Heading, SceneId, ViewpointId};
+use crate::{
+    sight::AgentView,
+    walk::{Choice, Step},
+};
+use wayword_core::{Gaze, Heading, SceneId, ViewpointId};
 
 /// Where an agent begins.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,11 +37,22 @@ pub struct Start {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walked {
     /// Every step.
-    pub steps: Vec<crate::walk::Step>,
+    pub steps: Vec<Step>,
     /// Why it ended.
     pub end: crate::walk::End,
     /// The object that is taken for the target.
     pub object: Option<wayword_core::ObjectId>,
+    /// What it took, where a language model decided.
+    pub effort: Option<crate::walk::Effort>,
+}
+
+/// How a hop is told: back, where it leads to a node where the agent has been, else by the view in which it lies.
+fn choice(agent_view: &AgentView<'_>, steps: &[Step], here: &ViewpointId, to: &ViewpointId) -> Choice {
+    if steps.iter().any(|step| step.viewpoint == *to) {
+        return Choice::Back;
+    }
+    let heading = agent_view.heading_to(here, to).unwrap_or(Heading::NORTH);
+    Gaze::compass().iter().position(|gaze| gaze.holds(heading)).map_or(Choice::Unseeing, Choice::Onward)
 }
 
 #[cfg(test)]

@@ -34,8 +34,15 @@ pub fn walk_by_phrases(
         let decision = policy.decide(&here, heading, &sight);
         let scored = scored(&sight, in_hand, directions.phrases.len());
         let viewpoint = here.clone();
-        let step =
-            |choice| Step { viewpoint, heading_rad: heading, views: scored, phrase: in_hand, told: None, choice };
+        let step = |choice| Step {
+            viewpoint,
+            heading_rad: heading,
+            views: scored,
+            phrase: in_hand,
+            told: None,
+            choice,
+            reason: None,
+        };
         match decision {
             Decision::Stop | Decision::DeadEnd => {
                 steps.push(step(Choice::Stop));
@@ -57,7 +64,7 @@ pub fn walk_by_phrases(
         }
     };
     let object = agent_view.point(&here, &directions.activity)?;
-    Ok(Walked { steps, end, object })
+    Ok(Walked { steps, end, object, effort: None })
 }
 
 /// Goes back over nodes; all but the last of them are passed without a look. Returns the last, and the heading there.
@@ -76,7 +83,15 @@ fn go_back(
             break;
         }
         let (viewpoint, choice) = (here.clone(), Choice::Back);
-        steps.push(Step { viewpoint, heading_rad: heading, views: Vec::new(), phrase: 0, told: None, choice });
+        steps.push(Step {
+            viewpoint,
+            heading_rad: heading,
+            views: Vec::new(),
+            phrase: 0,
+            told: None,
+            choice,
+            reason: None,
+        });
     }
     (here, heading)
 }

@@ -1,13 +1,12 @@
 //! The agent that reads: it takes every clause of an instruction, and believes in the walks that fit them.
 
-use super::{Start, Walked};
+use super::{Start, Walked, choice};
 use crate::{
     directions::beginning_of,
     error::WalkError,
     sight::{AgentView, Things},
     walk::{Choice, End, Step, Told},
 };
-use wayword_core::{Gaze, Heading, ViewpointId};
 use wayword_follower::{
     Guide,
     online::{Decision, OnwardWeights, Reader, Sighting},
@@ -55,21 +54,12 @@ fn walk(
         let choice = to.map_or(Choice::Stop, |to| choice(agent_view, &steps, &here, to));
         let told = Told { room: seen.room.clone(), ways: seen.hops.len(), things: seen.things.len() };
         let (viewpoint, views) = (here.clone(), Vec::new());
-        steps.push(Step { viewpoint, heading_rad: heading, views, phrase: 0, told: Some(told), choice });
+        steps.push(Step { viewpoint, heading_rad: heading, views, phrase: 0, told: Some(told), choice, reason: None });
         let Some(to) = to else { break end };
         heading = agent_view.heading_to(&here, to).unwrap_or(heading);
         here = to.clone();
     };
-    Ok(Walked { steps, end, object: None })
-}
-
-/// How a hop is told: back, where it leads to a node where the agent has been, else by the view in which it lies.
-fn choice(agent_view: &AgentView<'_>, steps: &[Step], here: &ViewpointId, to: &ViewpointId) -> Choice {
-    if steps.iter().any(|step| step.viewpoint == *to) {
-        return Choice::Back;
-    }
-    let heading = agent_view.heading_to(here, to).unwrap_or(Heading::NORTH);
-    Gaze::compass().iter().position(|gaze| gaze.holds(heading)).map_or(Choice::Unseeing, Choice::Onward)
+    Ok(Walked { steps, end, object: None, effort: None })
 }
 
 #[cfg(test)]

@@ -3,9 +3,11 @@
 
 mod results;
 mod table;
+mod took;
 
 pub use results::Results;
 pub use table::{EMPTY, UNREAD, Walker, compare, empty_set, swapped_set};
+pub use took::Took;
 
 use crate::swap::Swap;
 use serde::{Deserialize, Serialize};
@@ -45,6 +47,10 @@ pub struct About {
     pub encoder: Option<String>,
     /// What splits instructions.
     pub splitter: String,
+    /// The language model of the agent that walks by tools, and how it sees: `labels`, `pictures`, or the model that
+    /// describes pictures. `None` without that agent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tools: Option<(String, String)>,
     /// The rule of success in the table.
     pub rule: Rule,
     /// What intervals cover, as 0.95.
@@ -115,6 +121,9 @@ pub struct Row {
     pub figures: BTreeMap<Metric, Estimate>,
     /// This row less the first set's of the same agent; `None` for the first set and for those that do not read.
     pub against_first: Option<Difference>,
+    /// What its walks took, where a language model decided.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub took: Option<Took>,
 }
 
 /// One row less another of the same agent, item by item.

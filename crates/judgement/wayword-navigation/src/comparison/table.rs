@@ -1,7 +1,7 @@
 //! From scores to the table: means over items, intervals clustered by path, differences item by item.
 
 use super::{
-    About, AgentKind, Comparison, Difference, FEWEST_PATHS, Listening, Results, Row, Set, Swapped, results::Texts,
+    About, AgentKind, Comparison, Difference, FEWEST_PATHS, Listening, Results, Row, Set, Swapped, Took, results::Texts,
 };
 use crate::swap::Swap;
 use std::collections::BTreeMap;
@@ -89,6 +89,7 @@ impl Table<'_> {
             set: set.map(str::to_owned),
             figures: self.figures(&walker.name, kept, None),
             against_first: first.map(against),
+            took: Took::of(self.results, (&walker.name, kept), |by_item| self.estimate(&by_item)),
         }
     }
 
@@ -140,13 +141,15 @@ impl Table<'_> {
     where
         Self: 'r,
     {
-        let estimate = |metric| {
-            let by_item = of(metric);
-            let values: Vec<(&str, f64)> =
-                by_item.into_iter().map(|(item, figure)| (self.results.cluster(item), figure)).collect();
-            let About { resamples, level, seed, .. } = *self.about;
-            Some((metric, clustered_interval(&values, resamples, level, seed)?))
-        };
+        let estimate = |metric| Some((metric, self.estimate(&of(metric))?));
         Metric::ALL.into_iter().filter_map(estimate).collect()
+    }
+
+    /// The mean of items' figures, with its interval clustered by path.
+    fn estimate(&self, by_item: &BTreeMap<&str, f64>) -> Option<Estimate> {
+        let values: Vec<(&str, f64)> =
+            by_item.iter().map(|(item, figure)| (self.results.cluster(item), *figure)).collect();
+        let About { resamples, level, seed, .. } = *self.about;
+        clustered_interval(&values, resamples, level, seed)
     }
 }

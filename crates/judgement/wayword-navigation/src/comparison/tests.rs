@@ -16,6 +16,7 @@ fn walk(agent: &str, set: &str, item: &str, text_index: usize) -> Walk {
         steps: Vec::new(),
         end: End::Stopped,
         object: None,
+        effort: None,
     }
 }
 
@@ -41,6 +42,7 @@ fn about() -> About {
         detector: "labels/detector".into(),
         detector_score: None,
         encoder: None,
+        tools: None,
         splitter: "rules".into(),
         rule: Rule::Distance,
         level: 0.95,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use wayword_core::ModelError;
 
 pub(crate) use clauses::clause_texts;
-pub use model::ByModel;
+pub use model::{ByModel, split_prompt};
 pub use places::{NamedPlace, places};
 pub use rules::ByRules;
 
@@ -52,6 +52,14 @@ fn beginning(text: &str, most_bytes: usize) -> &str {
 /// The part of an instruction that agents read.
 pub(crate) fn beginning_of(instruction: &str) -> &str {
     beginning(instruction, MOST_BYTES_READ)
+}
+
+/// A text that somebody else wrote as one line without angle brackets, so that it cannot end its marks in a prompt.
+pub(crate) fn one_line(text: &str) -> String {
+    text.split(|c: char| c.is_whitespace() || c.is_control() || matches!(c, '<' | '>'))
+        .filter(|word| !word.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// The beginning of a phrase that is not too long for a grounder.

@@ -1,6 +1,6 @@
 //! Instructions split by a language model.
 
-use super::{Directions, Splitter, readable, reply};
+use super::{Directions, Splitter, one_line, readable, reply};
 use minijinja::{Environment, context};
 use std::sync::Arc;
 use wayword_core::{LanguageModel, Message, ModelError, Reply, Request, Sampling};
@@ -30,9 +30,8 @@ impl ByModel {
     }
 
     fn prompt(&self, instruction: &str) -> Result<String, ModelError> {
-        let instruction = one_line(readable(instruction, self.model.name())?);
-        let prompt = Environment::new().render_str(TEMPLATE, context! { instruction });
-        prompt.map_err(|error| self.failed(error.to_string()))
+        let instruction = readable(instruction, self.model.name())?;
+        split_prompt(instruction).map_err(|error| self.failed(error.to_string()))
     }
 
     /// One reply per prompt, in their order.
@@ -53,6 +52,14 @@ impl ByModel {
         };
         prompts.iter().map(next).collect()
     }
+}
+
+/// What a model is asked to take an instruction apart.
+///
+/// # Errors
+/// Never, unless the template is broken.
+pub fn split_prompt(instruction: &str) -> Result<String, minijinja::Error> {
+    Environment::new().render_str(TEMPLATE, context! { instruction => one_line(instruction) })
 }
 
 /// Why there are no directions yet.
@@ -94,14 +101,6 @@ impl Splitter for ByModel {
         }
         split
     }
-}
-
-/// An instruction as one line without angle brackets, so that it cannot end its marks.
-fn one_line(text: &str) -> String {
-    text.split(|c: char| c.is_whitespace() || c.is_control() || matches!(c, '<' | '>'))
-        .filter(|word| !word.is_empty())
-        .collect::<Vec<_>>()
-        .join(" ")
 }
 
 #[cfg(test)]

@@ -51,9 +51,7 @@ impl AgentView<'_> {
         things: &Things,
     ) -> Result<Surroundings, WalkError> {
         let around = self.around(here)?;
-        let position = |id: &ViewpointId| self.graph.position(id).unwrap_or_default();
-        let ways: Vec<ViewpointId> = self.graph.neighbours(here).into_iter().cloned().collect();
-        let hops: Vec<Hop> = ways.iter().map(|to| Hop::between(position(here), position(to), heading)).collect();
+        let (ways, hops) = self.ways(here, heading);
         let nearest = |direction: Heading| Hop::nearest(&hops, heading, direction);
         let mut found: Vec<(String, usize)> = Vec::new();
         match things {
@@ -76,6 +74,13 @@ impl AgentView<'_> {
             }
         }
         Ok(Surroundings { sighting: Sighting { hops, room: around.views.iter().find_map(room), things: found }, ways })
+    }
+
+    /// The ways out of a node, for an agent that looks along `heading`: the node that each leads to, and the hop.
+    pub(crate) fn ways(&self, here: &ViewpointId, heading: Heading) -> (Vec<ViewpointId>, Vec<Hop>) {
+        let ways: Vec<ViewpointId> = self.graph.neighbours(here).into_iter().cloned().collect();
+        let hops = ways.iter().map(|to| Hop::between(self.position(here), self.position(to), heading)).collect();
+        (ways, hops)
     }
 }
 

@@ -1,6 +1,8 @@
 //! `wayword compare` as the user types it.
 
-use crate::settings::{Asked, AskedPlatform, AskedRoles, Draw, RULES, Service, Walks, can_play};
+use crate::settings::{
+    Asked, AskedPlatform, AskedRoles, Draw, LABELS, RULES, Service, Walks, can_play, is_in_process, is_model,
+};
 use clap::{Args, ValueEnum, builder::PossibleValuesParser};
 use std::{fmt, path::PathBuf, str::FromStr};
 use wayword_metrics::Rule;
@@ -21,6 +23,9 @@ Examples:
       Agents that read turns, rooms, landmarks and stairs: one finds its way, the other knows the map.
   wayword compare --platform matterport --data DATA --episodes REVERIE_val_seen.json --split ollama/qwen3 --out runs/split
       A language model splits the instructions into phrases, instead of rules.
+  wayword compare --platform matterport --data DATA --episodes R2R_val_seen.json --limit 24 --instructions original \\
+      --instructions ours=runs/val_seen#r2r --agents tools,reader --llm openai/gpt-4.1-mini --swaps none --dry-run --out runs/tools
+      What it would cost to let a language model walk by the texts with two tools. Without --dry-run it walks.
 
 Give the same command again to continue a comparison that was stopped. `wayword report --run runs/table` shows the walks on a map.")]
 pub struct Compare {
@@ -38,8 +43,8 @@ pub struct Compare {
     #[arg(long, value_name = "SET")]
     pub instructions: Vec<String>,
     /// The agents: clip-nav, seq-clip-nav, glip-nav (walk by phrases), reader (reads every clause, and knows only where it was),
-    /// reader-map (reads the same, and knows the map). Always added: random and straight (lower-bound baselines), nearest-room
-    /// (knows the map) and oracle (upper bound).
+    /// reader-map (reads the same, and knows the map), tools (a language model that looks around and steps: --llm). Always added:
+    /// random and straight (lower-bound baselines), nearest-room (knows the map) and oracle (upper bound).
     #[arg(
         long,
         value_name = "NAMES",
@@ -67,7 +72,17 @@ pub struct Compare {
     /// What splits an instruction into phrases for the agents that walk by phrases: rules, or a language model as provider/model.
     #[arg(long, value_name = "MODEL", default_value = "rules", value_parser = splitter)]
     pub split: String,
-    /// Base URL of the provider of --split.
+    /// Language model of the agent `tools`, over HTTP, as provider/model. It calls tools where its provider has them.
+    #[arg(long, value_name = "MODEL", value_parser = walker)]
+    pub llm: Option<String>,
+    /// How the agent `tools` sees: labels (the platform's ground-truth labels, and the room), pictures (the model of --llm is shown
+    /// them), or a model as provider/model that describes the pictures. [default: labels]
+    #[arg(long, value_name = "HOW", value_parser = seer)]
+    pub see: Option<String>,
+    /// Longer side of the pictures that models get; larger pictures are shrunk. [default: 512]
+    #[arg(long, value_name = "PX")]
+    pub picture_px: Option<u32>,
+    /// Base URL of the provider of --split, --llm and --see.
     #[arg(long, value_name = "URL")]
     pub base_url: Option<String>,
     /// What counts as success: the target is visible from the last viewpoint (REVERIE's rule), or the goal is less than 3 m away
@@ -83,9 +98,12 @@ pub struct Compare {
         default_value = "directions,landmarks,sentences,other-path"
     )]
     pub swaps: Vec<SwapName>,
-    /// Thresholds of the agents as TOML: one table per agent, with the names in docs/AGENTS.md.
+    /// Thresholds and limits of the agents as TOML: one table per agent, with the names in docs/AGENTS.md.
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,
+    /// Print what the models would be asked and what that would cost, and ask nothing.
+    #[arg(long)]
+    pub dry_run: bool,
     /// Refused, with the reason: a calibration says how much the silence of labels counts against a claim, and no agent judges
     /// claims. `check` and `generate` take it.
     #[arg(long, value_name = "FILE")]
@@ -111,7 +129,7 @@ pub struct Compare {
 }
 
 /// The agents that `--agents` takes.
-const AGENTS: [&str; 5] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map"];
+const AGENTS: [&str; 6] = ["clip-nav", "seq-clip-nav", "glip-nav", "reader", "reader-map", "tools"];
 
 /// Which walks an agent that knows the map thinks of, as typed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -152,6 +170,25 @@ fn splitter(name: &str) -> Result<String, String> {
     Err(format!("name {RULES}, or a language model as provider/model, as in --split ollama/qwen3"))
 }
 
+/// Who walks by tools, as typed.
+fn walker(name: &str) -> Result<String, String> {
+    if is_model(name) && can_play(name, RULES) && !is_in_process(name) {
+        return Ok(name.to_owned());
+    }
+    Err("name a language model behind HTTP as provider/model, as in --llm openai/gpt-4.1-mini".to_owned())
+}
+
+/// How the agent that walks by tools sees that is shown the pictures itself.
+pub const PICTURES: &str = "pictures";
+
+/// How the agent that walks by tools sees, as typed.
+fn seer(name: &str) -> Result<String, String> {
+    if name == PICTURES || can_play(name, LABELS) {
+        return Ok(name.to_owned());
+    }
+    Err(format!("name {LABELS}, {PICTURES}, or a model that sees as provider/model, as in --see ollama/llava"))
+}
+
 impl Compare {
     /// The detector: that of `--detector`, or a grounder that is a checkpoint of GLIP (`hf/ORG/NAME:FILE.pth`).
     #[must_use]
@@ -160,7 +197,8 @@ impl Compare {
         self.detector.as_deref().or_else(|| Some(self.grounder.as_str()).filter(is_glip))
     }
 
-    /// What the flags ask for, in the form of other commands. The splitter's model stands in the role that asks.
+    /// What the flags ask for, in the form of other commands. The splitter's model stands in the role that asks, and the model of the
+    /// agent that walks by tools in the role that writes.
     #[must_use]
     pub fn asked(&self) -> Asked {
         Asked {
@@ -169,6 +207,10 @@ impl Compare {
             draw: Draw { seed: Some(self.seed), limit: self.limit.map(|limit| limit as usize) },
             roles: AskedRoles {
                 ask: Some(self.split.clone()),
+                see: self.see.clone().filter(|see| see != PICTURES),
+                write: self.llm.clone(),
+                write_sees: (self.see.as_deref() == Some(PICTURES)).then_some(true),
+                picture_px: self.picture_px,
                 base_url: self.base_url.clone(),
                 detector: self.detector().map(str::to_owned),
                 ..AskedRoles::default()

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use wayword_formats::Format;
 
 pub use check::{AskedWorld, Check, Detecting};
-pub use compare::{AskedPrior, Compare, SuccessRule, SwapName};
+pub use compare::{AskedPrior, Compare, PICTURES, SuccessRule, SwapName};
 pub use doctor::Doctor;
 pub use evaluate::Evaluate;
 pub use ledger::{Ledger, LedgerCommand};

@@ -30,6 +30,7 @@ use crate::{
 };
 
 pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, How, check_file, checked};
+pub use compare::compared;
 pub use generate::{Searched, Summary, generate_into};
 pub use perceive::{Extent, Measured, OfDetector, Row, measure_detector, perceive};
 
@@ -45,7 +46,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Calibrate(args) => calibrate::run(&args, output),
         Command::Export(args) => export::run(&args, output),
         Command::Report(args) => report::run(&args, output),
-        Command::Compare(args) => compare::run(&args, output),
+        Command::Compare(args) => compare::compared(&args, output),
         Command::Evaluate(args) => evaluate::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
         Command::Robustness(args) => robustness::run(&args, output),

@@ -1,6 +1,9 @@
 //! What a run would ask of models, and what that would cost.
 
-use super::Plan;
+use super::{
+    Plan,
+    bill::{Bill, Load, picture_tokens},
+};
 use crate::{
     count::count,
     error::Error,
@@ -38,7 +41,7 @@ pub struct Estimate {
     #[serde(skip_serializing_if = "Option::is_none")]
     detector: Option<Looked>,
     /// One per model.
-    models: Vec<Asked>,
+    models: Bill,
 }
 
 /// What a detector would look for.
@@ -48,30 +51,6 @@ struct Looked {
     model: String,
     /// Names that it looks for in every view by itself; the names of captions come on top.
     phrases: usize,
-}
-
-/// What one model would be asked.
-#[derive(Debug, Default, Serialize)]
-struct Asked {
-    model: String,
-    roles: Vec<&'static str>,
-    calls: u64,
-    tokens_in: u64,
-    tokens_out: u64,
-    /// US dollars; absent if the model's price is not known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    usd: Option<f64>,
-    /// The day of the price list.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    price_as_of: Option<String>,
-}
-
-/// Calls and tokens of one role.
-#[derive(Debug, Clone, Copy, Default)]
-struct Load {
-    calls: u64,
-    tokens_in: u64,
-    tokens_out: u64,
 }
 
 /// Typical texts in place of exchanges and captions that do not exist yet.
@@ -91,9 +70,6 @@ const STRUCTURED_TOKENS: u64 = 350;
 const CAPTION_TOKENS: u64 = 60;
 const CONDENSED_TOKENS: u64 = 25;
 const INSTRUCTION_TOKENS: u64 = 60;
-/// Pixels of a picture for each of its tokens, as two large providers count.
-const PIXELS_PER_TOKEN: u64 = 750;
-
 impl Estimate {
     pub(super) fn of(plan: &Plan<'_>) -> Result<Self, Error> {
         Self::of_items(plan, plan.items.iter())
@@ -101,7 +77,7 @@ impl Estimate {
 
     /// All calls, with those of a detector for each view.
     pub(super) fn calls(&self, per_view: u64) -> u64 {
-        self.models.iter().map(|asked| asked.calls).sum::<u64>() + per_view * self.views as u64
+        self.models.calls() + per_view * self.views as u64
     }
 
     /// The same for some of the items.
@@ -146,28 +122,11 @@ impl Estimate {
             ("writes", &roles.write, writing, true),
         ] {
             if is_model(model) && takes_part {
-                estimate.add(model, role, load);
+                estimate.models.add(model, role, load);
             }
         }
-        for asked in &mut estimate.models {
-            let price = plan.models.price(&asked.model);
-            asked.usd = price.map(|price| price.usd(asked.tokens_in, asked.tokens_out));
-            asked.price_as_of = price.map(|price| price.as_of.clone());
-        }
+        estimate.models.price(&plan.models);
         Ok(estimate)
-    }
-
-    fn add(&mut self, model: &str, role: &'static str, load: Load) {
-        let at = self.models.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
-            self.models.push(Asked { model: model.to_owned(), ..Asked::default() });
-            self.models.len() - 1
-        });
-        if let Some(asked) = self.models.get_mut(at) {
-            asked.roles.push(role);
-            asked.calls += load.calls;
-            asked.tokens_in += load.tokens_in;
-            asked.tokens_out += load.tokens_out;
-        }
     }
 }
 
@@ -187,11 +146,6 @@ fn questions(settings: &Settings) -> usize {
     }
 }
 
-/// Tokens of a picture of 4 by 3, as wide as pictures are sent at most.
-fn picture_tokens(settings: &Settings) -> u64 {
-    u64::from(settings.roles.picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN
-}
-
 /// Questions per view as they are asked on average.
 fn usual_questions(settings: &Settings) -> usize {
     match settings.perception {
@@ -199,6 +153,14 @@ fn usual_questions(settings: &Settings) -> usize {
         Perception::Fixed | Perception::Single | Perception::Structured => questions(settings),
         Perception::FollowUp => 1,
     }
+}
+
+/// What the description of a view takes of a model that sees.
+///
+/// # Errors
+/// When a prompt cannot be used.
+pub(crate) fn seeing(settings: &Settings) -> Result<Load, Error> {
+    Ok(Talk::of(&prompts(settings)?, settings)?.seeing)
 }
 
 /// What the dialogue about one view takes.
@@ -216,7 +178,7 @@ impl Talk {
         let rounds = usual_questions(settings);
         let mut transcript = Vec::new();
         let (mut asking, mut seeing) = (Load::default(), Load::default());
-        let picture = picture_tokens(settings);
+        let picture = picture_tokens(settings.roles.picture_px);
         for round in 0..rounds {
             if round > 0 {
                 asking.call(&prompts.question(&transcript)?, QUESTION_TOKENS);
@@ -253,33 +215,10 @@ fn write_load(prompts: &Prompts, settings: &Settings, styles: &[Measured], path:
             let brief =
                 Brief { earlier: &earlier[..number], ..Brief::new(&walk, &memory, style, profile, settings.seed) };
             load.call(&prompts.write(&brief)?, INSTRUCTION_TOKENS);
-            load.tokens_in += pictures * picture_tokens(settings);
+            load.tokens_in += pictures * picture_tokens(settings.roles.picture_px);
         }
     }
     Ok(load.times(u64::from(settings.candidates)))
-}
-
-impl Load {
-    fn call(&mut self, prompt: &str, tokens_out: u64) {
-        // English text has about four characters per token.
-        self.add(Self { calls: 1, tokens_in: prompt.len().div_ceil(4) as u64, tokens_out });
-    }
-
-    fn add(&mut self, other: Self) {
-        *self = self.plus(other);
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            calls: self.calls + other.calls,
-            tokens_in: self.tokens_in + other.tokens_in,
-            tokens_out: self.tokens_out + other.tokens_out,
-        }
-    }
-
-    fn times(self, times: u64) -> Self {
-        Self { calls: self.calls * times, tokens_in: self.tokens_in * times, tokens_out: self.tokens_out * times }
-    }
 }
 
 impl fmt::Display for Estimate {
@@ -301,26 +240,6 @@ impl fmt::Display for Estimate {
             f,
             "estimate, if dialogues end where they usually do, nothing is asked or written twice, and the ledger is empty:"
         )?;
-        for asked in &self.models {
-            write!(
-                f,
-                "  {} ({}): {}, about {} in, {} out",
-                asked.model,
-                asked.roles.join(", "),
-                count(asked.calls, "call"),
-                count(asked.tokens_in, "token"),
-                asked.tokens_out
-            )?;
-            match (asked.usd, &asked.price_as_of) {
-                (Some(0.0), _) => writeln!(f, ", free: it runs in process")?,
-                (Some(usd), Some(day)) => writeln!(f, ", about ${usd:.2} (prices of {day})")?,
-                _ => writeln!(f, ", price not known (see --prices)")?,
-            }
-        }
-        let known: Option<f64> = self.models.iter().map(|asked| asked.usd).sum();
-        match known {
-            Some(usd) => write!(f, "in all: about ${usd:.2}"),
-            None => write!(f, "in all: not known, because a price is missing"),
-        }
+        self.models.fmt(f)
     }
 }

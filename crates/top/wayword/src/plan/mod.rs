@@ -1,6 +1,7 @@
 //! A run before it begins: its platform, paths, styles and models, found from the settings. Nothing is asked, paid or
 //! written yet.
 
+mod bill;
 mod estimate;
 mod inputs;
 
@@ -17,7 +18,9 @@ use std::collections::BTreeMap;
 use wayword_core::Platform;
 use wayword_remote::Price;
 
+pub(crate) use bill::{Bill, Load, picture_tokens};
 pub use estimate::Estimate;
+pub(crate) use estimate::seeing;
 
 /// Items that stand for the others when the calls of a run are estimated.
 const FEW: usize = 8;

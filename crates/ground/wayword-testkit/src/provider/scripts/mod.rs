@@ -7,6 +7,7 @@ mod prompt;
 mod questioner;
 mod summariser;
 mod troubles;
+mod walker;
 
 use super::{Heard, Script};
 use rand::SeedableRng;
@@ -18,6 +19,7 @@ pub use eye::FlawedEye;
 pub use questioner::Questioner;
 pub use summariser::Summariser;
 pub use troubles::Troubled;
+pub use walker::{Gait, MISCHIEF, Route, Walker};
 
 /// All roles behind one model name. A request to write goes to the author, with pictures or without; another request with
 /// a picture goes to the eye, and any other to the role that its prompt is for.

@@ -7,7 +7,7 @@ use crate::{
     testing::{Cross, id, scene},
 };
 use std::collections::BTreeSet;
-use wayword_core::{Grounder, ModelError, Platform, Survey, View, survey::Known};
+use wayword_core::{Grounder, Heading, ModelError, Platform, Survey, View, ViewpointId, survey::Known};
 
 const THINGS: [(&str, &str); 4] = [("n2", "plant"), ("e2", "sofa"), ("s2", "bed"), ("w2", "sink")];
 const ROOMS: [(&str, &str); 3] = [("e2", "living room"), ("s2", "bedroom"), ("w2", "kitchen")];

@@ -4,13 +4,15 @@ use super::kept::Kept;
 use crate::{cli::AskedPrior, error::Error, text_file};
 use std::{collections::BTreeMap, path::Path};
 use wayword_navigation::{
-    agents::{Back, Parameters, Prior},
+    agents::{Back, Limits, Parameters, Prior},
     comparison::{AgentKind, Walker},
 };
 
 /// The agent that reads, and its fellow that knows the map.
 pub(super) const READER: &str = "reader";
 pub(super) const READER_MAP: &str = "reader-map";
+/// The agent by a language model.
+pub(super) const TOOLS: &str = "tools";
 /// The agent that uses a detector.
 pub(super) const BY_DETECTOR: &str = "glip-nav";
 
@@ -28,6 +30,8 @@ pub(super) enum Agent {
     Phrases { name: String, parameters: Parameters, by_detector: bool },
     /// Reads, and knows only where it was. Things are labels, or what scores at least a threshold.
     Reader(Option<f32>),
+    /// A language model that looks around and steps.
+    Tools(Limits),
     /// Reads, and knows the map.
     ReaderMap(Prior),
     /// This many random hops.
@@ -46,6 +50,7 @@ impl Agent {
         let agent = |name: &String| match name.as_str() {
             READER => Some(Self::Reader(kept.reader_threshold)),
             READER_MAP => None,
+            TOOLS => Some(Self::Tools(kept.tools.as_ref()?.limits)),
             _ => {
                 let parameters = *kept.parameters.get(name)?;
                 Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
@@ -64,6 +69,7 @@ impl Agent {
         match self {
             Self::Phrases { name, .. } => name.clone(),
             Self::Reader(_) => READER.to_owned(),
+            Self::Tools(_) => TOOLS.to_owned(),
             Self::ReaderMap(_) => READER_MAP.to_owned(),
             Self::Random(hops) => format!("random/{hops}"),
             Self::Straight(hops) => format!("straight/{hops}"),
@@ -75,7 +81,7 @@ impl Agent {
     /// The agent as the comparison takes it.
     pub(super) fn walker(&self) -> Walker {
         let (kind, reads) = match self {
-            Self::Phrases { .. } | Self::Reader(_) => (AgentKind::Agent, true),
+            Self::Phrases { .. } | Self::Reader(_) | Self::Tools(_) => (AgentKind::Agent, true),
             Self::Random(_) | Self::Straight(_) => (AgentKind::LowerBound, false),
             Self::ReaderMap(_) | Self::NearestRoom => (AgentKind::Informed, true),
             Self::Oracle => (AgentKind::UpperBound, false),
@@ -91,6 +97,8 @@ pub(super) struct Thresholds {
     pub(super) of_phrases: BTreeMap<String, Parameters>,
     /// From which score on a thing counts as seen by the agent that reads; `None` where labels say what is there.
     pub(super) of_reader: Option<f32>,
+    /// What a walk of the agent by a language model may take.
+    pub(super) of_tools: Limits,
 }
 
 /// The thresholds of each agent: the defaults of its grounder, changed by a file.
@@ -114,6 +122,11 @@ pub(super) fn parameters(
     for name in names {
         let default = Parameters::default_of(name, scored_by(name, grounder, detector));
         let own = tables.remove(name);
+        if name == TOOLS {
+            let limits = own.map_or(Ok(Limits::default()), limits);
+            all.of_tools = limits.map_err(|problem| wrong(file.unwrap_or(Path::new("")), &problem))?;
+            continue;
+        }
         let is_reader = name == READER && !grounder.starts_with("labels");
         let changed = match (name.as_str(), own) {
             (_, None) => Ok(default),
@@ -144,6 +157,18 @@ pub(super) fn scored_by<'a>(agent: &str, grounder: &'a str, detector: Option<&st
 fn wrong(file: &Path, problem: &str) -> Error {
     let hint = "write a table per agent, as in: [clip-nav] on one line and stop_threshold = 0.7 on the next";
     Error::usage(format!("{}: {problem}", file.display()), hint)
+}
+
+/// What a walk of the agent by a language model may take.
+fn limits(own: toml::Value) -> Result<Limits, String> {
+    let limits: Limits = own.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+    let are_sane = limits.max_hops <= 1000 && (1..=1000).contains(&limits.max_calls) && limits.memory <= 50;
+    let is_money = limits.max_usd.is_none_or(|usd| usd.is_finite() && usd > 0.0);
+    if are_sane && is_money {
+        return Ok(limits);
+    }
+    Err("[tools]: max_hops must be at most 1000, max_calls from 1 to 1000, memory at most 50, and max_usd above 0"
+        .to_owned())
 }
 
 /// The same for the agent that reads, which has one threshold.

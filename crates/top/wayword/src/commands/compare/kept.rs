@@ -1,12 +1,12 @@
 //! The settings of a comparison, kept in its folder so that it is continued as it was begun.
 
-use super::agents::READER_MAP;
+use super::agents::{READER_MAP, TOOLS};
 use crate::{
     cli::{Compare, SwapName},
     error::Error,
     platforms,
     run::hash_of_file,
-    settings::{Settings, nameable},
+    settings::{LABELS, Settings, nameable},
 };
 use serde::{Deserialize, Serialize};
 use std::{
@@ -14,7 +14,11 @@ use std::{
     path::{Path, PathBuf},
 };
 use wayword_core::Platform;
-use wayword_navigation::{agents::Parameters, comparison::UNREAD, swap::Swap};
+use wayword_navigation::{
+    agents::{Limits, Parameters},
+    comparison::UNREAD,
+    swap::Swap,
+};
 
 /// A comparison as it was asked for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,10 +69,27 @@ pub(crate) struct Kept {
     /// From which score on a thing counts as seen by the agent that reads, if a grounder says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) reader_threshold: Option<f32>,
+    /// The agent by a language model, if it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) tools: Option<ToolsKept>,
     /// Thresholds of the agents that walk by phrases.
     pub(crate) parameters: BTreeMap<String, Parameters>,
     /// Hashes of the files that are read; a comparison is not continued with others.
     pub(crate) inputs: BTreeMap<String, String>,
+}
+
+/// The agent by a language model, as it was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ToolsKept {
+    /// Its model.
+    pub(crate) llm: String,
+    /// How it sees: labels, pictures, or the model that describes them.
+    pub(crate) see: String,
+    /// Longer side of the pictures that models are sent.
+    pub(crate) picture_px: u32,
+    /// What a walk may take.
+    pub(crate) limits: Limits,
 }
 
 /// Format of the walks. It also changes when agents decide otherwise.
@@ -127,6 +148,7 @@ impl Kept {
             seed: settings.seed,
             prior: prior(args)?,
             reader_threshold: thresholds.of_reader,
+            tools: tools(args, settings, thresholds.of_tools)?,
             parameters: thresholds.of_phrases,
             inputs,
         })
@@ -168,6 +190,30 @@ fn prior(args: &Compare) -> Result<Option<String>, Error> {
         ));
     }
     Ok(knows_map.then(|| args.prior.unwrap_or_default().to_string()))
+}
+
+/// The agent by a language model; `None` where it was not asked for.
+fn tools(args: &Compare, settings: &Settings, limits: Limits) -> Result<Option<ToolsKept>, Error> {
+    let is_asked = args.agents.iter().any(|agent| agent == TOOLS);
+    let flags =
+        [("--llm", args.llm.is_some()), ("--see", args.see.is_some()), ("--picture-px", args.picture_px.is_some())];
+    match (&args.llm, flags.into_iter().find(|(_, is_given)| *is_given)) {
+        (_, Some((flag, _))) if !is_asked => Err(Error::usage(
+            format!("{flag} has no effect: it is for the agent {TOOLS}"),
+            format!("add {TOOLS} to --agents, or leave {flag} out"),
+        )),
+        (None, _) if is_asked => Err(Error::usage(
+            format!("--agents {TOOLS}: this agent needs a language model"),
+            "name one, as in --llm openai/gpt-4.1-mini",
+        )),
+        (Some(llm), _) => Ok(Some(ToolsKept {
+            llm: llm.clone(),
+            see: args.see.clone().unwrap_or_else(|| LABELS.to_owned()),
+            picture_px: settings.roles.picture_px,
+            limits,
+        })),
+        (None, _) => Ok(None),
+    }
 }
 
 /// The swaps that were asked for. `none` cannot be combined.

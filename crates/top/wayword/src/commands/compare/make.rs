@@ -4,14 +4,16 @@ use super::{
     agents::{Agent, RANDOM_WALKS},
     grounders::Grounders,
     sets::{Item, Purpose, Text},
+    tools::Toolbox,
 };
+use crate::at_once::at_once;
 use std::collections::BTreeMap;
 use wayword_core::{Platform, PlatformError, Recent, SceneId, rng};
 use wayword_navigation::{
     AgentView, Things, WalkError,
     agents::{
         MapReader, Surveyed, Walked, last_room_in, nearest_room, oracle, random, straight, walk_by_phrases,
-        walk_by_reading,
+        walk_by_reading, walk_by_tools,
     },
     comparison::UNREAD,
     directions::{Directions, Splitter},
@@ -25,13 +27,14 @@ pub(super) struct Crew<'a> {
     pub(super) grounders: &'a Grounders,
     pub(super) splitter: &'a dyn Splitter,
     pub(super) agents: &'a [Agent],
+    pub(super) toolbox: Option<&'a Toolbox>,
     pub(super) surveys: &'a Recent<SceneId, Surveyed>,
     pub(super) seed: u64,
 }
 
 impl Agent {
     /// The texts of an item that this agent walks by.
-    fn texts<'i>(&self, item: &'i Item) -> impl Iterator<Item = &'i Text> {
+    pub(super) fn texts<'i>(&self, item: &'i Item) -> impl Iterator<Item = &'i Text> {
         let last = match self {
             Self::ReaderMap(_) => Purpose::Floor,
             Self::NearestRoom => Purpose::Set,
@@ -48,7 +51,11 @@ impl Crew<'_> {
             let read = || agent.texts(item).map(|text| (text.set.clone(), text.index)).collect();
             let unread = |walks| (0..walks).map(|index| (UNREAD.to_owned(), index)).collect::<Vec<_>>();
             let places = match agent {
-                Agent::Phrases { .. } | Agent::Reader(_) | Agent::ReaderMap(_) | Agent::NearestRoom => read(),
+                Agent::Phrases { .. }
+                | Agent::Reader(_)
+                | Agent::Tools(_)
+                | Agent::ReaderMap(_)
+                | Agent::NearestRoom => read(),
                 Agent::Random(_) => unread(RANDOM_WALKS),
                 Agent::Straight(_) | Agent::Oracle => unread(1),
             };
@@ -84,6 +91,11 @@ impl Crew<'_> {
                         add(text, None, walk_by_reading(&views, &item.start, &text.text, &things)?);
                     }
                 }
+                Agent::Tools(_) => {
+                    for (text, walked) in self.by_tools(agent, item)? {
+                        add(text, None, walked);
+                    }
+                }
                 Agent::ReaderMap(prior) => {
                     let graph = self.platform.graph(&item.start.scene)?;
                     let scene = &item.start.scene;
@@ -102,6 +114,22 @@ impl Crew<'_> {
             }
         }
         Ok(walks)
+    }
+
+    /// The walks of the agent by a language model, several at a time.
+    fn by_tools<'i>(&self, agent: &Agent, item: &'i Item) -> Result<Vec<(&'i Text, Walked)>, WalkError> {
+        let Some(toolbox) = self.toolbox else { return Ok(Vec::new()) };
+        let (grounder, scene) = (self.grounders.views.as_ref(), &item.start.scene);
+        let agent_view = AgentView::new(self.platform, grounder, toolbox.needs_pictures(), scene)?;
+        let names_object = item.episode.target_object.is_some();
+        let walk = |text: &&'i Text| {
+            walk_by_tools(&agent_view, &item.start, &text.text, names_object, toolbox.tools())
+                .map(|walked| (*text, walked))
+        };
+        let texts: Vec<&Text> = agent.texts(item).collect();
+        at_once(&texts, toolbox.at_once, walk, |walked| walked.as_ref().is_err_and(WalkError::ends_run))
+            .into_iter()
+            .collect()
     }
 
     /// The texts of an item that agents walk by phrase by phrase, each split once.
@@ -148,5 +176,6 @@ fn walk(agent: &Agent, item: &Item, text: &Text, directions: Option<Directions>,
         steps: walked.steps,
         end: walked.end,
         object: walked.object,
+        effort: walked.effort,
     }
 }

@@ -1,6 +1,7 @@
 //! `wayword compare`.
 
 mod agents;
+mod estimate;
 mod grounders;
 mod kept;
 mod make;
@@ -8,6 +9,7 @@ mod outputs;
 mod page;
 mod score;
 mod sets;
+mod tools;
 
 use crate::{
     calls::Calls,
@@ -26,12 +28,14 @@ use crate::{
     settings::RULES,
 };
 use agents::Agent;
+use estimate::Estimate;
 use grounders::Grounders;
 use make::Crew;
 use outputs::Gathered;
 use score::Judge;
 use sets::Item;
 use std::{fs, path::Path};
+use tools::{Mute, Toolbox};
 use wayword_core::{Failure, ModelError, Recent};
 use wayword_navigation::{
     WalkError,
@@ -62,7 +66,11 @@ const FRUITLESS: usize = 20;
 /// Items between two flushes to the disk.
 const FLUSH: usize = 16;
 
-pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
+/// Compares as the flags of `wayword compare` ask, and prints the result.
+///
+/// # Errors
+/// When the flags do not fit together, a set cannot be read, or no item could be walked.
+pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
     if let Some(file) = &args.calibration {
         let problem = format!(
             "--calibration {} has no effect: no agent judges claims by what labels do not list",
@@ -71,8 +79,10 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
         return Err(Error::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
     }
     let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
-    Calls::ready(&job, output)?;
     let kept = Kept::of(args, &job.settings)?;
+    if !args.dry_run {
+        Calls::ready(&job, output)?;
+    }
     let platform = kept.platform()?;
     let demands = Demands::new(platform.as_ref());
     let (items, sizes, of_episodes) = sets::load(&kept, platform.as_ref(), &demands)?;
@@ -83,6 +93,13 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
         ));
     }
     let models = Models::of(&job)?;
+    tools::refuse_unknown_price(&kept, &models)?;
+    let agents = Agent::all(&kept, args.prior.unwrap_or_default());
+    if args.dry_run {
+        let estimate = Estimate::of(&kept, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
+        output.data(&estimate, &estimate);
+        return Ok(Exit::Done);
+    }
     let grounders = Grounders::open(&kept, output)?;
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
     run::refuse_file(&args.out)?;
@@ -95,13 +112,14 @@ pub(super) fn run(args: &Compare, output: &Output) -> Result<Exit, Error> {
     if calls.is_some() {
         run::keep_id(&args.out, &id)?;
     }
-    let agents = Agent::all(&kept, args.prior.unwrap_or_default());
+    let toolbox = Toolbox::open(&kept, &job.settings, (calls.as_ref(), items.len()), platform.as_ref())?;
     let surveys = Recent::new(SCENES_KEPT);
     let crew = Crew {
         platform: platform.as_ref(),
         grounders: &grounders,
         splitter: splitter.as_ref(),
         agents: &agents,
+        toolbox: toolbox.as_ref(),
         surveys: &surveys,
         seed: kept.seed,
     };
@@ -171,6 +189,7 @@ fn walk_all(
     bar.reset_eta();
     let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
     let mut losses = Losses::default();
+    let mut mute = Mute::default();
     let workers = calls.map_or_else(cores, Calls::workers);
     in_order(
         &left,
@@ -182,6 +201,7 @@ fn walk_all(
             match made {
                 Ok(made) => {
                     walked += 1;
+                    mute.count(&made)?;
                     made.iter().try_for_each(|walk| walks.append(walk))?;
                 }
                 // The service is gone: the other items would wait for it too.

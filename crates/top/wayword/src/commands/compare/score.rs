@@ -1,13 +1,13 @@
 //! From walks to figures.
 
 use super::{
-    agents::{Agent, READER},
+    agents::{Agent, READER, TOOLS},
     file,
     kept::{Kept, last_part},
     make::Crew,
     sets::Item,
 };
-use crate::{demands::Demands, episodes, error::Error, run::lines};
+use crate::{demands::Demands, episodes, error::Error, run::lines, settings::LABELS};
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 use wayword_metrics::{Demand, Distances, Metric, Rule, Score, Trajectory, score};
 use wayword_navigation::{
@@ -27,8 +27,8 @@ pub(super) struct Judge<'a> {
     clusters: BTreeMap<&'a str, String>,
     /// What counts as success.
     pub(super) rule: Rule,
-    /// Whether agents can name an object at all.
-    names_objects: bool,
+    /// Whether agents that walk by phrases can name an object at all, and whether the agent by a language model can.
+    name_objects: [bool; 2],
     /// The first item that names no object whose place is known.
     pub(super) without_object: Option<&'a str>,
 }
@@ -61,9 +61,11 @@ impl<'a> Judge<'a> {
         };
         let clusters = items.iter().map(|item| (item.episode.id.as_str(), episodes::cluster(&item.episode))).collect();
         // Labels name objects, and boxes point to them; a grounder that compares whole pictures does neither.
-        let names_objects = kept.grounder.starts_with("labels") || kept.detects_views();
+        let grounder_names = kept.grounder.starts_with("labels") || kept.detects_views();
+        let is_shown_names = kept.tools.as_ref().is_some_and(|tools| tools.see == LABELS);
+        let name_objects = [grounder_names, grounder_names || is_shown_names];
         let without_object = blind.map(|item| item.episode.id.as_str());
-        Ok(Self { demands, clusters, rule, names_objects, without_object })
+        Ok(Self { demands, clusters, rule, name_objects, without_object })
     }
 
     /// Calls `take` with every walk of a folder, its score and the demand of its item.
@@ -85,7 +87,9 @@ impl<'a> Judge<'a> {
                 let problems: Vec<String> = problems.iter().map(ToString::to_string).collect();
                 line.broken(problems.join("; "))
             })?;
-            if walk.directions.is_none() || !self.names_objects {
+            let [by_phrases, by_tools] = self.name_objects;
+            let can_name = if walk.agent == TOOLS { by_tools } else { by_phrases && walk.directions.is_some() };
+            if !can_name {
                 score.grounding = None;
             }
             take(walk, score, demand)
@@ -129,6 +133,7 @@ pub(super) fn comparison(
         detector_score: crew.grounders.score.clone(),
         encoder: kept.encoder.clone(),
         splitter: crew.splitter.name().to_owned(),
+        tools: kept.tools.as_ref().map(|tools| (tools.llm.clone(), tools.see.clone())),
         rule: judge.rule,
         level: LEVEL,
         resamples,
@@ -149,7 +154,8 @@ pub(super) fn comparison(
 fn parameters(kept: &Kept) -> BTreeMap<String, BTreeMap<String, String>> {
     let of_phrases = kept.parameters.iter().map(|(agent, of)| (agent.clone(), of.named()));
     let named = |least: f32| BTreeMap::from([("phrase_threshold".to_owned(), least.to_string())]);
-    of_phrases.chain(kept.reader_threshold.map(|least| (READER.to_owned(), named(least)))).collect()
+    let of_tools = kept.tools.as_ref().map(|tools| (TOOLS.to_owned(), tools.limits.named()));
+    of_phrases.chain(of_tools).chain(kept.reader_threshold.map(|least| (READER.to_owned(), named(least)))).collect()
 }
 
 /// Whether the agents use thresholds that were chosen for their grounder.

@@ -3,8 +3,9 @@
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{Estimate, McNemar, Metric};
 use wayword_navigation::{
-    comparison::{AgentKind, Comparison, EMPTY, Listening, Row, Swapped},
+    comparison::{AgentKind, Comparison, EMPTY, Listening, Row, Swapped, Took},
     swap::Swap,
+    walk::{End, Useless},
 };
 
 /// The metrics of the short table. The full table has all.
@@ -147,6 +148,54 @@ pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
             .to_owned(),
         ],
     }))
+}
+
+/// Columns of what walks took.
+pub(super) const BESIDE_TOOK: [&str; 7] =
+    ["calls", "tokens in", "tokens out", "US$", "hops", "seconds", "largest prompt"];
+/// Columns of what went wrong in walks.
+pub(super) const BESIDE_TROUBLE: [&str; 7] =
+    ["walks", "no call", "no such way", "looks twice", "refused or empty", "stops at once", "ended by a limit"];
+
+/// What the walks of agents by a language model took, on average.
+pub(super) fn took(comparison: &Comparison) -> Vec<Line<'_>> {
+    of_took(comparison, |took| {
+        let means = [&took.calls, &took.tokens_in, &took.tokens_out].map(|estimate| plain(estimate, 1));
+        let usd = took.usd.as_ref().map_or_else(|| "-".to_owned(), |usd| plain(usd, 4));
+        let rest = [plain(&took.hops, 1), plain(&took.seconds, 1), took.most_tokens_in.to_string()];
+        means.into_iter().chain([usd]).chain(rest).collect()
+    })
+}
+
+/// What went wrong in those walks: numbers of replies, then of walks.
+pub(super) fn trouble(comparison: &Comparison) -> Vec<Line<'_>> {
+    of_took(comparison, |took| {
+        let Useless { no_call, no_way, idle, failed } = took.useless;
+        let by_a_limit: usize = took
+            .ended
+            .iter()
+            .filter(|(end, _)| !matches!(end, End::Stopped | End::DeadEnd))
+            .map(|(_, walks)| walks)
+            .sum();
+        [took.walks, no_call, no_way, idle, failed, took.at_once, by_a_limit].map(|count| count.to_string()).to_vec()
+    })
+}
+
+fn of_took(comparison: &Comparison, beside: impl Fn(&Took) -> Vec<String>) -> Vec<Line<'_>> {
+    let line = |row: &'_ Row| Some(of_row(comparison, row, &NONE, beside(row.took.as_ref()?)));
+    opened(comparison.rows.iter().filter_map(line))
+}
+
+/// A line without figures.
+static NONE: BTreeMap<Metric, Estimate> = BTreeMap::new();
+
+/// A mean with its interval, with that many decimals.
+fn plain(estimate: &Estimate, decimals: usize) -> String {
+    let Estimate { mean, low, high, .. } = estimate;
+    if mean.abs() >= 1e9 {
+        return format!("{mean:.1e}");
+    }
+    format!("{mean:.decimals$} [{low:.decimals$}, {high:.decimals$}]")
 }
 
 fn of_row<'a>(

@@ -1,7 +1,10 @@
 //! The comparison as Markdown.
 
 use super::{
-    figures::{BESIDE_DIFFERENCES, BESIDE_SWAPS, Line, SHOWN, differences, heading, name, rows, swaps},
+    figures::{
+        BESIDE_DIFFERENCES, BESIDE_SWAPS, BESIDE_TOOK, BESIDE_TROUBLE, Line, SHOWN, differences, heading, name, rows,
+        swaps, took, trouble,
+    },
     notes,
 };
 use std::fmt::Write;
@@ -27,6 +30,13 @@ pub fn markdown(comparison: &Comparison) -> String {
     if !lost.is_empty() {
         add(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
         table(&mut page, "Swap", &lost, &SHOWN, &BESIDE_SWAPS);
+    }
+    let took = took(comparison);
+    if !took.is_empty() {
+        page.push_str("\n## What a walk by a language model took\n\n");
+        table(&mut page, "Instructions", &took, &[], &BESIDE_TOOK);
+        page.push_str("\n## What went wrong in it\n\n");
+        table(&mut page, "Instructions", &trouble(comparison), &[], &BESIDE_TROUBLE);
     }
     list(&mut page, "Sets", comparison.sets.iter().map(notes::set));
     list(&mut page, "How to read it", notes::listeners(comparison).into_iter().chain(notes::notes(comparison)));

@@ -8,6 +8,8 @@ use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS,
 /// The agents that read.
 const READER: &str = "reader";
 const READER_MAP: &str = "reader-map";
+/// The agent by a language model.
+const TOOLS: &str = "tools";
 
 /// What was compared, and on how many items.
 pub(super) fn subject(about: &About) -> String {
@@ -129,7 +131,7 @@ fn of_table(comparison: &Comparison) -> Vec<String> {
         ),
     ];
     notes.extend(grounding(comparison));
-    if about.parameters.keys().any(|agent| agent != READER) {
+    if about.parameters.keys().any(|agent| ![READER, TOOLS].contains(&agent.as_str())) {
         notes.push(format!("Instructions are split into phrases by {}.", name(&about.splitter)));
     }
     notes.extend(readers(comparison));
@@ -165,11 +167,28 @@ fn readers(comparison: &Comparison) -> Vec<String> {
             "{READER_MAP} knows the whole graph, every room and every label: ground truth, not perception. It chooses among {walks}. What it reaches by an empty text, its weights alone reach: only what it gains over that comes from the instruction."
         ));
     }
-    if !notes.is_empty() {
+    let has_weights = !notes.is_empty();
+    notes.extend(about.tools.as_ref().filter(|_| has(TOOLS)).map(|(llm, see)| by_tools(llm, see)));
+    if has_weights {
         notes
             .push("The weights of the agents that read were fitted to the train splits of R2R and REVERIE.".to_owned());
     }
     notes
+}
+
+/// What the agent by a language model is told.
+fn by_tools(llm: &str, see: &str) -> String {
+    let sees = match see {
+        "labels" => {
+            "It is told labels of what is around it and the name of the room: ground truth, not perception".to_owned()
+        }
+        "pictures" => "It is shown four pictures of what is around it".to_owned(),
+        see => format!("It is told what {} says of four pictures around it", name(see)),
+    };
+    format!(
+        "{TOOLS} is {}, which looks around and steps by calling tools. {sees}. Its calls and tokens are means over walks; \"ended by a limit\" counts walks that ended because of the most hops, calls or money, in circles, or after replies of no use. All walks are scored as they stand.",
+        name(llm)
+    )
 }
 
 /// How to read differences and swaps, if there are any.
@@ -211,7 +230,7 @@ fn grounding(comparison: &Comparison) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if !about.parameters.is_empty() {
+    if about.parameters.keys().any(|agent| agent != TOOLS) {
         notes.push(match about.swept {
             true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
             false => {

@@ -2,7 +2,8 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_SWAPS, Figure, Line, READS_NOTHING, SHOWN, differences, heading, name, rows, swaps,
+        BESIDE_DIFFERENCES, BESIDE_SWAPS, BESIDE_TOOK, BESIDE_TROUBLE, Figure, Line, READS_NOTHING, SHOWN, differences,
+        heading, name, rows, swaps, took, trouble,
     },
     forest::{Forest, Plot},
     notes,
@@ -21,6 +22,8 @@ pub(in super::super) struct PageView {
     sets: Vec<String>,
     notes: Vec<String>,
     table: TableView,
+    /// What walks by a language model took, and what went wrong in them; empty without such an agent.
+    took: Vec<TableView>,
     forests: Vec<Forest>,
     /// Titles of the folded tables, with the tables.
     folded: Vec<(String, TableView)>,
@@ -68,6 +71,11 @@ impl PageView {
             sets: comparison.sets.iter().map(notes::set).collect(),
             notes: notes::notes(comparison),
             table: TableView::new("Instructions", &table, &SHOWN, vec![]),
+            took: [(took(comparison), BESIDE_TOOK), (trouble(comparison), BESIDE_TROUBLE)]
+                .into_iter()
+                .filter(|(lines, _)| !lines.is_empty())
+                .map(|(lines, beside)| TableView::new("Instructions", &lines, &[], beside.to_vec()))
+                .collect(),
             forests: forests(&first, &table, &less, &lost),
             folded,
             parameters: parameters(comparison),

@@ -1,25 +1,34 @@
 //! The comparison for a terminal.
 
 use super::{
-    figures::{BESIDE_DIFFERENCES, BESIDE_SWAPS, Line, SHOWN, differences, heading, name, rows, swaps},
+    figures::{
+        BESIDE_DIFFERENCES, BESIDE_SWAPS, BESIDE_TOOK, BESIDE_TROUBLE, Line, SHOWN, differences, heading, name, rows,
+        swaps, took, trouble,
+    },
     notes,
 };
 use std::fmt::Write;
+use wayword_metrics::Metric;
 use wayword_navigation::comparison::Comparison;
 
 /// The comparison as plain text.
 #[must_use]
 pub fn screen(comparison: &Comparison) -> String {
     let mut text = format!("{}\n{}\n\n", notes::subject(&comparison.about), notes::success(comparison.about.rule));
-    table(&mut text, "instructions", &rows(comparison), &[]);
+    table(&mut text, "instructions", &rows(comparison), &SHOWN, &[]);
     let first = comparison.sets.first().map_or_else(String::new, |set| name(&set.name));
     let less = differences(comparison);
     if !less.is_empty() {
-        table(&mut text, &format!("minus {first}"), &less, &BESIDE_DIFFERENCES);
+        table(&mut text, &format!("minus {first}"), &less, &SHOWN, &BESIDE_DIFFERENCES);
     }
     let lost = swaps(comparison);
     if !lost.is_empty() {
-        table(&mut text, &format!("loss by swap of set {first}"), &lost, &BESIDE_SWAPS);
+        table(&mut text, &format!("loss by swap of set {first}"), &lost, &SHOWN, &BESIDE_SWAPS);
+    }
+    let took = took(comparison);
+    if !took.is_empty() {
+        table(&mut text, "what a walk took", &took, &[], &BESIDE_TOOK);
+        table(&mut text, "what went wrong", &trouble(comparison), &[], &BESIDE_TROUBLE);
     }
     let sets = comparison.sets.iter().map(notes::set);
     let after =
@@ -32,15 +41,15 @@ pub fn screen(comparison: &Comparison) -> String {
 }
 
 /// Columns as wide as their cells; words are aligned to the left, figures to the right.
-fn table(text: &mut String, label: &str, lines: &[Line<'_>], beside: &[&str]) {
+fn table(text: &mut String, label: &str, lines: &[Line<'_>], metrics: &[Metric], beside: &[&str]) {
     let mut grid: Vec<Vec<String>> = Vec::with_capacity(lines.len() + 1);
     let words = ["agent".to_owned(), label.to_owned()].into_iter();
-    let headings = SHOWN.map(heading).into_iter().chain(beside.iter().map(|name| (*name).to_owned()));
+    let headings = metrics.iter().map(|metric| heading(*metric)).chain(beside.iter().map(|name| (*name).to_owned()));
     grid.push(words.chain(headings).collect());
     for line in lines {
-        let figure = |metric| line.figure(metric).map_or_else(|| "-".to_owned(), |figure| figure.to_string());
+        let figure = |metric: &Metric| line.figure(*metric).map_or_else(|| "-".to_owned(), |figure| figure.to_string());
         let words = [if line.opens { line.who() } else { String::new() }, line.label.clone()].into_iter();
-        grid.push(words.chain(SHOWN.map(figure)).chain(line.beside.iter().cloned()).collect());
+        grid.push(words.chain(metrics.iter().map(figure)).chain(line.beside.iter().cloned()).collect());
     }
     let width = |column: usize| grid.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
     let widths: Vec<usize> = (0..grid[0].len()).filter_map(width).collect();

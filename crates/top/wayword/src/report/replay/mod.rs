@@ -16,7 +16,7 @@ use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
 use wayword_metrics::{Outcome, Rule, Score};
 use wayword_navigation::{
     comparison::UNREAD,
-    walk::{Choice, End, Walk},
+    walk::{Choice, Effort, End, Walk},
 };
 
 /// Most steps of a walk that are shown.
@@ -132,6 +132,10 @@ impl Replay<'_> {
             End::Stopped => "the agent stopped",
             End::Cap => "it reached the limit of its steps",
             End::DeadEnd => "it reached a dead end",
+            End::Calls => "it made the most calls that it may",
+            End::Money => "its model cost what a walk may cost",
+            End::Circles => "it walked in circles",
+            End::Useless => "its model gave no reply of use",
         };
         let off = score.navigation_error_m.map_or_else(
             || "its end has no connection to the goal".to_owned(),
@@ -159,6 +163,7 @@ impl Replay<'_> {
             };
             meta.push(format!("names object {object} as the target{judged}"));
         }
+        meta.extend(walk.effort.as_ref().map(took));
         meta
     }
 
@@ -184,6 +189,13 @@ impl Replay<'_> {
             },
         )
     }
+}
+
+/// What a walk took of a language model.
+fn took(effort: &Effort) -> String {
+    let Effort { calls, tokens_in, tokens_out, usd, seconds, .. } = effort;
+    let usd = usd.filter(|usd| *usd > 0.0).map_or_else(String::new, |usd| format!(", ${usd:.4}"));
+    format!("{}, {tokens_in} tokens in, {tokens_out} out{usd}, {seconds:.1} s", count(*calls, "call"))
 }
 
 fn mark(outcome: Option<Outcome>) -> (&'static str, &'static str) {

@@ -11,6 +11,9 @@ use wayword_navigation::walk::{Choice, Scored, Step, Told, Walk};
 /// Longest phrase in a cell, characters.
 const MOST_PHRASE_CHARS: usize = 120;
 
+/// Longest reason, characters.
+const MOST_REASON_CHARS: usize = 400;
+
 /// A step.
 #[derive(Debug, Serialize)]
 pub(super) struct StepView {
@@ -29,6 +32,8 @@ pub(super) struct StepView {
     views: Vec<ViewView>,
     class: &'static str,
     then: String,
+    /// Why, in a model's own words.
+    reason: Option<String>,
 }
 
 /// A view with its scores.
@@ -78,6 +83,7 @@ pub(super) fn steps(
             Choice::Stop => "stopped",
         },
         then: then(step.choice),
+        reason: step.reason.as_ref().map(|reason| reason.chars().take(MOST_REASON_CHARS).collect()),
     };
     let views = walk.steps.iter().take(shown).enumerate().map(step).collect();
     (views, range.map(|range| (number(range.low), number(range.high))))

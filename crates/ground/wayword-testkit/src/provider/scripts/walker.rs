@@ -1,0 +1,225 @@
+//! Plays a model that walks by the tools of an agent: along a route that it knows, at random, or badly.
+//!
+//! It reads the prompts of `wayword-navigation` as a model does: where it stands on the map, and the ways out.
+
+use super::{Heard, Script, rng};
+use rand::Rng;
+use std::{collections::BTreeMap, fmt::Write};
+use wayword_core::{DVec3, Heading, ViewpointGraph, ViewpointId};
+
+/// How the model walks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Gait {
+    /// Along the route of its instruction.
+    Route,
+    /// This many hops, each through a random way, all equally likely.
+    Random(usize),
+    /// In one of the ways of [`MISCHIEF`], by its instruction.
+    Broken,
+}
+
+/// Plays a model that walks.
+#[derive(Debug, Clone)]
+pub struct Walker {
+    gait: Gait,
+    seed: u64,
+    /// By instruction.
+    routes: BTreeMap<String, Route>,
+}
+
+/// The places of a route, from its start: metres to the right, ahead and up, as the walker looks there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Route(Vec<DVec3>);
+
+/// What a model does that breaks, the same at each call.
+pub const MISCHIEF: [&str; 10] = [
+    "I would go to the left here.",
+    "fly {\"way\": 1, \"why\": \"it is quicker\"}",
+    "step {\"way\": ",
+    "step {\"way\": 99, \"why\": \"I like the number\"}",
+    "step {\"why\": \"any way will do\"}",
+    "observe {\"why\": \"to be sure\"}",
+    "stop {\"why\": \"I am there\"}",
+    "step {\"way\": 1, \"why\": \"always the first\"}",
+    "<script>alert(1)</script> step {\"way\": \"first\"}",
+    "{\"tool\": \"step\", \"way\": -1}",
+];
+
+impl Route {
+    /// The route over some viewpoints of a graph, begun along a heading. Places that the graph does not have are left out.
+    #[must_use]
+    pub fn along(graph: &ViewpointGraph, heading: Heading, viewpoints: &[ViewpointId]) -> Self {
+        let places: Vec<DVec3> = viewpoints.iter().filter_map(|viewpoint| graph.position(viewpoint)).collect();
+        let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
+        let from = places.first().copied().unwrap_or_default();
+        let told = |place: &DVec3| {
+            let off = *place - from;
+            DVec3::new(off.dot(right), off.dot(ahead), off.z)
+        };
+        Self(places.iter().map(told).collect())
+    }
+}
+
+impl Walker {
+    /// A model that knows the routes of some instructions.
+    #[must_use]
+    pub fn new(gait: Gait, seed: u64, routes: impl IntoIterator<Item = (String, Route)>) -> Self {
+        Self { gait, seed, routes: routes.into_iter().collect() }
+    }
+
+    fn along_route(&self, seen: &Prompt<'_>) -> String {
+        let Some(Route(route)) = self.routes.get(seen.text) else { return "I do not know this one.".to_owned() };
+        let here = nearest(route, seen.here);
+        let Some(next) = route.get(here + 1) else { return call("stop", None, "the route ends here") };
+        let way = nearest(&seen.ends(), *next) + 1;
+        format!("{}\n{}", call("step", Some(way), "the route leads there"), call("observe", None, "to see it"))
+    }
+
+    fn at_random(&self, seen: &Prompt<'_>, prompt: &str, hops: usize) -> String {
+        if seen.hops >= hops || seen.ways.is_empty() {
+            return call("stop", None, "enough");
+        }
+        let way = rng(self.seed, prompt).random_range(1..=seen.ways.len());
+        call("step", Some(way), "why not")
+    }
+}
+
+fn call(tool: &str, way: Option<usize>, why: &str) -> String {
+    let mut line = format!("{tool} {{");
+    if let Some(way) = way {
+        // Writing to a text cannot fail.
+        let _ = write!(line, "\"way\": {way}, ");
+    }
+    line + &format!("\"why\": \"{why}\"}}")
+}
+
+/// The place nearest to another, by its number from 0.
+fn nearest(places: &[DVec3], to: DVec3) -> usize {
+    let far = |at: &usize| places[*at].distance(to);
+    (0..places.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
+}
+
+impl Script for Walker {
+    fn reply(&self, heard: &Heard) -> String {
+        let prompt = heard.prompt();
+        let Some(seen) = Prompt::read(prompt) else { return "I was asked something else.".to_owned() };
+        match self.gait {
+            Gait::Route => self.along_route(&seen),
+            Gait::Random(hops) => self.at_random(&seen, prompt, hops),
+            Gait::Broken => {
+                let kind = rng(self.seed, seen.text).random_range(0..MISCHIEF.len());
+                MISCHIEF[kind].to_owned()
+            }
+        }
+    }
+}
+
+/// What a prompt says of the walk.
+struct Prompt<'a> {
+    text: &'a str,
+    here: DVec3,
+    /// The direction in which the walker looks, radians to the right of how it looked at the start.
+    heading_rad: f64,
+    /// Hops so far that the prompt tells.
+    hops: usize,
+    /// Turn (radians, positive right), length and climb (metres) of each way out.
+    ways: Vec<(f64, f64, f64)>,
+}
+
+impl<'a> Prompt<'a> {
+    fn read(prompt: &'a str) -> Option<Self> {
+        let text = prompt.split("<instruction>\n").nth(1)?.split("\n</instruction>").next()?;
+        let places: BTreeMap<usize, DVec3> = prompt.lines().filter_map(place).collect();
+        let here = after(prompt, "You stand at place ")? as usize;
+        let last = prompt.lines().filter_map(step).next_back();
+        let heading_rad = match last {
+            Some((_, from, to)) => {
+                let off = *places.get(&to)? - *places.get(&from)?;
+                if off.truncate() == glam::DVec2::ZERO { 0.0 } else { libm::atan2(off.x, off.y) }
+            }
+            None => 0.0,
+        };
+        let ways = prompt.split("Ways out:\n").nth(1)?.lines().map_while(way).collect();
+        Some(Self { text, here: *places.get(&here)?, heading_rad, hops: last.map_or(0, |(number, ..)| number), ways })
+    }
+
+    /// Where each way ends.
+    fn ends(&self) -> Vec<DVec3> {
+        let end = |(turn_rad, length_m, climb_m): &(f64, f64, f64)| {
+            let flat_m = (length_m * length_m - climb_m * climb_m).max(0.0).sqrt();
+            let direction = self.heading_rad + turn_rad;
+            self.here + DVec3::new(flat_m * libm::sin(direction), flat_m * libm::cos(direction), *climb_m)
+        };
+        self.ways.iter().map(end).collect()
+    }
+}
+
+/// The number behind some words.
+fn after(text: &str, words: &str) -> Option<f64> {
+    let rest = &text[text.find(words)? + words.len()..];
+    let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.' && c != '-').unwrap_or(rest.len());
+    rest[..end].trim_end_matches('.').parse().ok()
+}
+
+/// A place of the map, as in "place 2: right 1.0, ahead 2.0, up 0.0; hallway; ways to 1".
+fn place(line: &str) -> Option<(usize, DVec3)> {
+    let number = after(line.strip_prefix("place ").map(|_| line)?, "place ")? as usize;
+    Some((number, DVec3::new(after(line, ": right ")?, after(line, ", ahead ")?, after(line, ", up ")?)))
+}
+
+/// A step, as in "3. from place 1 to place 2: it leads there".
+fn step(line: &str) -> Option<(usize, usize, usize)> {
+    let number: usize = line.split_once(". from place ")?.0.parse().ok()?;
+    Some((number, after(line, ". from place ")? as usize, after(line, " to place ")? as usize))
+}
+
+/// A way out, as in "1: left, 88 degrees left, 1.9 m, up 0.6 m; new".
+fn way(line: &str) -> Option<(f64, f64, f64)> {
+    let (_, told) = line.split_once(": ").filter(|(number, _)| number.parse::<usize>().is_ok())?;
+    let told = told.split(';').next()?;
+    let (mut turn, mut length, mut climb) = (0.0, 0.0, 0.0);
+    for part in told.split(", ").map(str::trim) {
+        let number = |part: &str| part.split(' ').find_map(|word| word.parse::<f64>().ok());
+        match part {
+            part if part.ends_with("degrees right") => turn = number(part)?.to_radians(),
+            part if part.ends_with("degrees left") => turn = -number(part)?.to_radians(),
+            part if part.starts_with("up ") => climb = number(part)?,
+            part if part.starts_with("down ") => climb = -number(part)?,
+            part if part.ends_with(" m") => length = number(part)?,
+            _ => {}
+        }
+    }
+    Some((turn, length, climb))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::Role;
+
+    const PROMPT: &str = "<instruction>\nGo to the sink.\n</instruction>\n\nWhere you have been:\n\
+        place 1: right 0.0, ahead 0.0, up 0.0; hallway; ways to 2, 3 new\n\
+        place 2: right 2.0, ahead 0.0, up 0.0; you did not look around; ways to 1, 1 new\n\n\
+        Your last steps:\n1. from place 1 to place 2: because\n\nYou stand at place 2. You can make 23 more steps.\n\
+        Ways out:\n1: behind, 180 degrees right, 2.0 m; to place 1\n2: left, 90 degrees left, 2.2 m, up 1.0 m; new\n";
+
+    fn reply(gait: Gait, route: &[[f64; 3]]) -> String {
+        let route = Route(route.iter().map(|place| DVec3::from_array(*place)).collect());
+        let walker = Walker::new(gait, 0, [("Go to the sink.".to_owned(), route)]);
+        walker.reply(&Heard { messages: vec![(Role::User, PROMPT.to_owned())], ..Heard::default() })
+    }
+
+    #[test]
+    fn it_takes_the_way_to_the_next_place_and_stops_at_the_last() {
+        let route = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 1.0]];
+        assert!(reply(Gait::Route, &route).starts_with("step {\"way\": 2, "));
+        assert!(reply(Gait::Route, &route[..2]).starts_with("stop {"));
+    }
+
+    #[test]
+    fn at_random_it_stops_after_its_hops() {
+        assert!(reply(Gait::Random(2), &[]).starts_with("step {"));
+        assert!(reply(Gait::Random(1), &[]).starts_with("stop {"));
+        assert!(MISCHIEF.contains(&reply(Gait::Broken, &[]).as_str()));
+    }
+}

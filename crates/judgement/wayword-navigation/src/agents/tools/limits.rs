@@ -1,0 +1,40 @@
+//! What one walk of the agent may take.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What one walk may take.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Limits {
+    /// Most hops, those back included.
+    pub max_hops: usize,
+    /// Most calls of the model.
+    pub max_calls: usize,
+    /// Most US dollars for the model's calls. The call that passes it is the last one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_usd: Option<f64>,
+    /// How many of its last steps the agent is told again, with its reasons.
+    pub memory: usize,
+}
+
+/// People's walks in R2R have 4 to 6 hops; the reader goes 24 at most.
+impl Default for Limits {
+    fn default() -> Self {
+        Self { max_hops: 24, max_calls: 60, max_usd: None, memory: 6 }
+    }
+}
+
+impl Limits {
+    /// All of them by name, for reports.
+    #[must_use]
+    pub fn named(&self) -> BTreeMap<String, String> {
+        let usd = self.max_usd.map(|usd| ("max_usd", usd.to_string()));
+        let counts = [
+            ("max_hops", self.max_hops.to_string()),
+            ("max_calls", self.max_calls.to_string()),
+            ("memory", self.memory.to_string()),
+        ];
+        counts.into_iter().chain(usd).map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}

@@ -1,0 +1,131 @@
+//! What the model is told: the tools, and where it stands. Each prompt stands alone, so a walk can go on from the
+//! ledger at any step, and no prompt grows with the walk.
+
+use super::{
+    limits::Limits,
+    memory::Memory,
+    quoted,
+    scene::{Scene, turned},
+};
+use crate::error::WalkError;
+use minijinja::{Environment, context};
+use serde::Serialize;
+use wayword_core::{Message, ModelError, Request, Role, Sampling, Tool};
+use wayword_follower::online::Hop;
+
+const SYSTEM: &str = include_str!("system.j2");
+const STATE: &str = include_str!("state.j2");
+/// Longest instruction, characters. People's texts have up to about 2,500.
+const MOST_TEXT_CHARS: usize = 3_000;
+/// Most tokens of a reply, thinking included.
+const REPLY_TOKENS: u32 = 600;
+/// Smallest climb that is told, metres.
+const CLIMB_M: f64 = 0.2;
+
+const OBSERVE: Tool = Tool {
+    name: "observe",
+    does: "Look around where you stand. You are told what is there, by direction.",
+    arguments: r#"{"type": "object", "properties": {"why": {"type": "string", "description": "the reason, in one sentence"}, "note": {"type": "string", "description": "which part of the instruction is done; replaces your last note"}}, "required": ["why"]}"#,
+};
+const STEP: Tool = Tool {
+    name: "step",
+    does: "Walk one of the ways out of where you stand, to its end.",
+    arguments: r#"{"type": "object", "properties": {"way": {"type": "integer", "description": "the number of the way"}, "why": {"type": "string", "description": "the reason, in one sentence"}, "note": {"type": "string", "description": "which part of the instruction is done; replaces your last note"}}, "required": ["way", "why"]}"#,
+};
+const STOP: Tool = Tool {
+    name: "stop",
+    does: "End the walk where you stand, because the instruction ends here.",
+    arguments: r#"{"type": "object", "properties": {"why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["why"]}"#,
+};
+const STOP_AT: Tool = Tool {
+    name: "stop",
+    does: "End the walk where you stand, and name the object that the instruction means.",
+    arguments: r#"{"type": "object", "properties": {"object": {"type": "string", "description": "the number of the object in the list, or its name"}, "why": {"type": "string", "description": "the reason, in one sentence"}}, "required": ["object", "why"]}"#,
+};
+static TOOLS: [Tool; 3] = [OBSERVE, STEP, STOP];
+static TOOLS_FOR_OBJECTS: [Tool; 3] = [OBSERVE, STEP, STOP_AT];
+
+/// How the agent sees, in the prompt's words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Sees {
+    Labels,
+    Pictures,
+    Captions,
+}
+
+/// Everything that the prompt of one call depends on.
+pub(super) struct State<'a> {
+    pub(super) text: &'a str,
+    pub(super) sees: Sees,
+    pub(super) names_object: bool,
+    pub(super) memory: &'a Memory,
+    /// The number of the place where it stands.
+    pub(super) here: usize,
+    pub(super) ways: &'a [Way],
+    /// What it saw there, if it looked.
+    pub(super) scene: Option<&'a Scene>,
+    pub(super) limits: &'a Limits,
+    pub(super) calls: usize,
+    pub(super) hops: usize,
+    /// What was wrong with its last reply.
+    pub(super) trouble: Option<&'a str>,
+    pub(super) seed: u64,
+}
+
+/// A way out, as it is told.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub(super) struct Way {
+    words: String,
+}
+
+impl Way {
+    /// A hop that leads to the place of that number, where the agent was before.
+    pub(super) fn new(hop: &Hop, leads_to: Option<usize>) -> Self {
+        let rise_m = hop.length_m * libm::sin(hop.elevation_rad);
+        let climb = match rise_m {
+            rise_m if rise_m >= CLIMB_M => format!(", up {rise_m:.1} m"),
+            rise_m if rise_m <= -CLIMB_M => format!(", down {:.1} m", -rise_m),
+            _ => String::new(),
+        };
+        let to = leads_to.map_or_else(|| "new".to_owned(), |number| format!("to place {number}"));
+        Self { words: format!("{}, {:.1} m{climb}; {to}", turned(hop.turn_rad), hop.length_m) }
+    }
+}
+
+/// The request of one call.
+pub(super) fn request(state: &State<'_>) -> Result<Request, WalkError> {
+    let State { sees, names_object, memory, here, ways, scene, limits, calls, hops, trouble, .. } = *state;
+    let system = render(SYSTEM, context! { sees, names_object })?;
+    let (places, more) = memory.map();
+    let told = context! {
+        text => quoted(state.text, MOST_TEXT_CHARS),
+        places, more, here, ways, trouble,
+        last => memory.last_steps().collect::<Vec<_>>(),
+        note => memory.note,
+        looked => scene.is_some(),
+        room => scene.and_then(|scene| scene.room.as_deref()),
+        seen => scene.map(|scene| &scene.lines[..]).unwrap_or_default(),
+        calls => limits.max_calls.saturating_sub(calls),
+        hops => limits.max_hops.saturating_sub(hops),
+    };
+    let images = scene.map(|scene| scene.pictures.clone()).unwrap_or_default();
+    Ok(Request {
+        messages: vec![
+            Message { role: Role::System, text: system, images: Vec::new() },
+            Message::about(render(STATE, told)?, images),
+        ],
+        sampling: Sampling { temperature: 0.0, max_tokens: REPLY_TOKENS, seed: state.seed },
+        replicate: 0,
+        schema: None,
+        tools: if names_object { &TOOLS_FOR_OBJECTS } else { &TOOLS },
+    })
+}
+
+fn render(template: &str, told: minijinja::Value) -> Result<String, WalkError> {
+    let failed = |error: minijinja::Error| ModelError::Failed { model: "tools".to_owned(), reason: error.to_string() };
+    let mut environment = Environment::new();
+    environment.set_trim_blocks(true);
+    environment.set_lstrip_blocks(true);
+    Ok(environment.render_str(template, told).map_err(failed)?)
+}

@@ -1,0 +1,52 @@
+//! What a walk along a known route would ask of a model, for estimates before anything is asked.
+
+use super::{Called, Limits, Looks, Tools, Walker, reply::Act};
+use crate::{agents::Start, error::WalkError, sight::AgentView};
+use wayword_core::{LanguageModel, ModelError, Reply, Request, ViewpointId};
+
+/// The requests of a walk along a route, of a model that looks around at each place and then steps on, and stops at the
+/// end. Nothing is asked. A route that leaves the graph ends there.
+///
+/// # Errors
+/// When the platform gives no view, or there is nothing of what the model is to see.
+pub fn rehearse(
+    agent_view: &AgentView<'_>,
+    start: &Start,
+    text: &str,
+    names_object: bool,
+    (looks, limits): (Looks<'_>, Limits),
+    route: &[ViewpointId],
+) -> Result<Vec<Request>, WalkError> {
+    let tools = Tools { model: &Nobody, looks, limits, seed: 0 };
+    let mut walker = Walker::new(agent_view, start, text, names_object, tools);
+    let call = |act| Called { act, why: TYPICAL_REASON.to_owned(), note: Some(TYPICAL_NOTE.to_owned()) };
+    let mut requests = vec![walker.request()?];
+    walker.act(vec![call(Act::Observe)])?;
+    for to in route.iter().skip(1) {
+        requests.push(walker.request()?);
+        walker.effort.calls += 1;
+        let way = walker.ways().iter().position(|(way, _)| way == to);
+        let Some(way) = way else { return Ok(requests) };
+        if walker.act(vec![call(Act::Step(Some(way + 1))), call(Act::Observe)])?.is_some() {
+            return Ok(requests);
+        }
+    }
+    requests.push(walker.request()?);
+    Ok(requests)
+}
+
+const TYPICAL_REASON: &str = "The instruction says to go past the table, and this way leads past it.";
+const TYPICAL_NOTE: &str = "Out of the bedroom and past the table; next: turn left into the kitchen.";
+
+/// A model that is never asked.
+struct Nobody;
+
+impl LanguageModel for Nobody {
+    fn name(&self) -> &'static str {
+        "nobody"
+    }
+
+    fn complete(&self, _: &[Request]) -> Vec<Result<Reply, ModelError>> {
+        Vec::new()
+    }
+}

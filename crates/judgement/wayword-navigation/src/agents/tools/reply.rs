@@ -1,0 +1,187 @@
+//! What a model's reply calls: tools as lines of a fixed form, whether the service had tool calls or not.
+//!
+//! Models write JSON in many ways, so some that can only mean one call are read too: an object that names its tool, and
+//! a name with nothing but a number behind it. Prose is never taken for a call.
+
+use super::quoted;
+use serde_json::Value;
+
+/// A call of a tool.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Called {
+    pub(super) act: Act,
+    /// The model's reason, in one line; empty where it gave none.
+    pub(super) why: String,
+    /// What it wants to be told again.
+    pub(super) note: Option<String>,
+}
+
+/// What is to be done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Act {
+    /// Look around.
+    Observe,
+    /// Take a way out, by its number from 1; `None` where the call names no number.
+    Step(Option<usize>),
+    /// End the walk, and perhaps name the object.
+    Stop(Option<Pointed>),
+}
+
+/// An object that a model names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Pointed {
+    /// By its number among those that it was shown.
+    Number(usize),
+    /// In words.
+    Words(String),
+}
+
+/// Most bytes of a reply that are read.
+const MOST_BYTES: usize = 8_000;
+/// Most calls of a reply.
+const MOST_CALLS: usize = 4;
+/// Longest reason and note, characters.
+const MOST_CHARS: usize = 300;
+const NAMES: [&str; 3] = ["observe", "step", "stop"];
+
+/// The calls of a reply, in their order; empty where there is none.
+pub(super) fn read(reply: &str) -> Vec<Called> {
+    let text = &reply[..reply.floor_char_boundary(MOST_BYTES)];
+    let mut calls = Vec::new();
+    let mut at = 0;
+    while at < text.len() && calls.len() < MOST_CALLS {
+        let end = text[at..].find('\n').map_or(text.len(), |end| at + end + 1);
+        let line = text[at..end].trim_start_matches(|c: char| c.is_whitespace() || "-*>`•".contains(c));
+        let from = end - line.len();
+        let (call, after) = match named(line) {
+            Some((name, rest)) if rest.starts_with('{') => object(text, end - rest.len(), Some(name)),
+            Some((name, rest)) => (bare(name, rest), end),
+            None if line.starts_with('{') => object(text, from, None),
+            None => (None, end),
+        };
+        calls.extend(call);
+        at = after.max(end);
+    }
+    calls
+}
+
+/// The tool that a line begins with, and what stands behind it.
+fn named(line: &str) -> Option<(&'static str, &str)> {
+    let is_name = |name: &&str| line.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name));
+    let name = NAMES.into_iter().find(is_name)?;
+    Some((name, line[name.len()..].trim_start_matches([' ', ':', '(', '\t'])))
+}
+
+/// A call with JSON that begins at a byte of the text, and the byte behind it.
+fn object(text: &str, from: usize, name: Option<&str>) -> (Option<Called>, usize) {
+    let mut values = serde_json::Deserializer::from_str(&text[from..]).into_iter::<Value>();
+    let Some(Ok(value)) = values.next() else { return (None, from) };
+    let after = from + values.byte_offset();
+    let own = ["tool", "name", "action"].into_iter().find_map(|field| value.get(field)?.as_str());
+    let inner = ["arguments", "input", "parameters"].into_iter().find_map(|field| value.get(field));
+    let inner = inner.filter(|inner| inner.is_object() && name.is_none());
+    (name.or(own).and_then(|name| called(name, inner.unwrap_or(&value))), after)
+}
+
+/// A call with at most a number.
+fn bare(name: &str, rest: &str) -> Option<Called> {
+    let rest = rest.trim_end_matches(|c: char| c.is_whitespace() || ")`.".contains(c));
+    let rest = rest.strip_prefix("way").map_or(rest, |rest| rest.trim_start_matches([' ', '=', ':']));
+    let number = rest.parse().ok();
+    let act = match name {
+        "step" => Act::Step(Some(number?)),
+        "observe" if rest.is_empty() => Act::Observe,
+        "stop" if rest.is_empty() => Act::Stop(None),
+        _ => return None,
+    };
+    Some(Called { act, why: String::new(), note: None })
+}
+
+fn called(name: &str, arguments: &Value) -> Option<Called> {
+    let act = match name.to_ascii_lowercase().as_str() {
+        "observe" => Act::Observe,
+        "step" => Act::Step(arguments.get("way").and_then(number)),
+        "stop" => Act::Stop(arguments.get("object").and_then(pointed)),
+        _ => return None,
+    };
+    let words = |field: &str| Some(quoted(arguments.get(field)?.as_str()?, MOST_CHARS));
+    let note = words("note").filter(|note| !note.is_empty());
+    Some(Called { act, why: words("why").unwrap_or_default(), note })
+}
+
+/// A number, also one that stands in quotes.
+fn number(value: &Value) -> Option<usize> {
+    match value {
+        Value::String(text) => text.trim().parse().ok(),
+        value => usize::try_from(value.as_u64()?).ok(),
+    }
+}
+
+fn pointed(value: &Value) -> Option<Pointed> {
+    let words = || value.as_str().map(|words| quoted(words, MOST_CHARS)).filter(|words| !words.is_empty());
+    number(value).map(Pointed::Number).or_else(|| words().map(Pointed::Words))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn acts(reply: &str) -> Vec<Act> {
+        read(reply).into_iter().map(|called| called.act).collect()
+    }
+
+    #[test]
+    fn a_call_is_a_line_with_a_name_and_json() {
+        let reply =
+            "I turn left here.\nstep {\"way\": 2, \"why\": \"the text\\nsays <left>\", \"note\": \"\"}\nobserve {}";
+        let calls = read(reply);
+        assert_eq!(acts(reply), [Act::Step(Some(2)), Act::Observe]);
+        assert_eq!((calls[0].why.as_str(), &calls[0].note), ("the text says left", &None));
+        assert_eq!(acts("stop {\"object\": 3}"), [Act::Stop(Some(Pointed::Number(3)))]);
+        assert_eq!(acts("stop {\"object\": \"the sink\"}"), [Act::Stop(Some(Pointed::Words("the sink".into())))]);
+    }
+
+    #[test]
+    fn other_ways_to_write_a_call_are_read_too() {
+        for reply in [
+            "- **step {\"way\": \"2\"}",
+            "```json\n{\n \"tool\": \"step\",\n \"way\": 2\n}\n```",
+            "{\"name\": \"Step\", \"arguments\": {\"way\": 2}}",
+            "step(2)",
+            "Step: way 2",
+            "`step 2`",
+        ] {
+            assert_eq!(acts(reply), [Act::Step(Some(2))], "{reply}");
+        }
+        assert_eq!(acts("STOP"), [Act::Stop(None)]);
+    }
+
+    #[test]
+    fn prose_and_broken_calls_are_no_calls() {
+        for reply in [
+            "",
+            "Stop there and think.",
+            "Step 2 looks right to me.",
+            "I would step {\"way\": 2}",
+            "step {\"way\": 2",
+            "jump {\"way\": 2}",
+            "[1, 2]",
+            "{\"way\": 2}",
+        ] {
+            assert_eq!(acts(reply), [], "{reply}");
+        }
+        assert_eq!(acts("step {\"way\": -1}"), [Act::Step(None)]);
+        assert_eq!(acts(&"observe\n".repeat(1000)).len(), MOST_CALLS);
+    }
+
+    proptest! {
+        #[test]
+        fn any_reply_is_read(reply in "\\PC{0,200}", json in "[{}\\[\\]\":,a-z0-9 \n]{0,80}") {
+            read(&reply);
+            for called in read(&format!("step {json}\n{reply}")) {
+                prop_assert!(called.why.chars().count() <= MOST_CHARS);
+            }
+        }
+    }
+}

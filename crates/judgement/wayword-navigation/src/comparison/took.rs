@@ -1,0 +1,92 @@
+//! What the walks of an agent by a language model took: calls, tokens, money, hops, time, and replies of no use.
+
+use super::Results;
+use crate::walk::{Effort, End, Useless, Walk};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use wayword_metrics::Estimate;
+
+/// What the walks of a row took. Means are over items, with intervals clustered by path; counts are over walks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Took {
+    /// Number of walks.
+    pub walks: usize,
+    /// Calls of the model in a walk.
+    pub calls: Estimate,
+    /// Hops of a walk.
+    pub hops: Estimate,
+    /// Tokens of all prompts of a walk.
+    pub tokens_in: Estimate,
+    /// Tokens of all replies of a walk.
+    pub tokens_out: Estimate,
+    /// US dollars of a walk; `None` where a price is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub usd: Option<Estimate>,
+    /// Seconds that the model took in a walk, when the calls were made.
+    pub seconds: Estimate,
+    /// Tokens of the largest prompt of all.
+    pub most_tokens_in: u64,
+    /// Replies of no use.
+    pub useless: Useless,
+    /// Walks that stopped at their start.
+    pub at_once: usize,
+    /// Walks by why they ended.
+    pub ended: BTreeMap<End, usize>,
+}
+
+/// What one walk took.
+#[derive(Debug, Clone)]
+pub(super) struct Taken {
+    effort: Effort,
+    hops: usize,
+    end: End,
+}
+
+impl Taken {
+    /// What a walk took, where a language model decided.
+    pub(super) fn of(walk: &Walk) -> Option<Self> {
+        let hops = walk.steps.len().saturating_sub(1);
+        Some(Self { effort: walk.effort.clone()?, hops, end: walk.end })
+    }
+}
+
+impl Took {
+    /// What the walks of an agent by a set took. `estimate` gives the mean of items' figures with its interval.
+    pub(super) fn of(
+        results: &Results,
+        (agent, set): (&str, &str),
+        estimate: impl Fn(BTreeMap<&str, f64>) -> Option<Estimate>,
+    ) -> Option<Self> {
+        let by_item = results.taken(agent, set)?;
+        let mean = |figure: &dyn Fn(&Taken) -> Option<f64>| {
+            let mut means = BTreeMap::new();
+            for (item, texts) in by_item {
+                let figures = texts.values().map(figure).collect::<Option<Vec<f64>>>()?;
+                means.insert(item.as_str(), figures.iter().sum::<f64>() / figures.len().max(1) as f64);
+            }
+            estimate(means)
+        };
+        let all = || by_item.values().flat_map(BTreeMap::values);
+        let mut ended = BTreeMap::new();
+        all().for_each(|taken| *ended.entry(taken.end).or_default() += 1);
+        let sum = |of: fn(&Useless) -> usize| all().map(|taken| of(&taken.effort.useless)).sum();
+        Some(Self {
+            walks: all().count(),
+            calls: mean(&|taken| Some(taken.effort.calls as f64))?,
+            hops: mean(&|taken| Some(taken.hops as f64))?,
+            tokens_in: mean(&|taken| Some(taken.effort.tokens_in as f64))?,
+            tokens_out: mean(&|taken| Some(taken.effort.tokens_out as f64))?,
+            usd: mean(&|taken| taken.effort.usd),
+            seconds: mean(&|taken| Some(taken.effort.seconds))?,
+            most_tokens_in: all().map(|taken| taken.effort.most_tokens_in).max().unwrap_or_default(),
+            useless: Useless {
+                no_call: sum(|useless| useless.no_call),
+                no_way: sum(|useless| useless.no_way),
+                idle: sum(|useless| useless.idle),
+                failed: sum(|useless| useless.failed),
+            },
+            at_once: all().filter(|taken| taken.hops == 0 && taken.end == End::Stopped).count(),
+            ended,
+        })
+    }
+}

@@ -1,0 +1,161 @@
+//! What a comparison would ask of models, and what that would cost.
+
+use super::{
+    agents::{Agent, TOOLS},
+    kept::{Kept, ToolsKept},
+    sets::Item,
+    tools::describing,
+};
+use crate::{
+    cli::PICTURES,
+    count::count,
+    error::Error,
+    plan::{Bill, Load, Models, picture_tokens, seeing},
+    settings::{LABELS, Settings, is_model},
+};
+use serde::Serialize;
+use std::{collections::BTreeSet, fmt};
+use wayword_core::{ModelError, Platform, View};
+use wayword_navigation::{
+    AgentView,
+    agents::{Describes, Looks, rehearse},
+    directions::split_prompt,
+    grounders::{Lexical, Sees},
+};
+
+/// Items whose walks are rehearsed; the others are taken to be like them.
+const FEW: usize = 40;
+/// Tokens of a typical reply with one or two calls, and of one that takes an instruction apart.
+const REPLY_TOKENS: u64 = 80;
+const SPLIT_TOKENS: u64 = 60;
+/// Views of a place.
+const VIEWS: u64 = 4;
+
+/// What a comparison would ask of models.
+#[derive(Debug, Serialize)]
+pub(super) struct Estimate {
+    /// Items that every set has.
+    items: usize,
+    /// Walks of the agent by a language model.
+    walks: usize,
+    /// Most tokens of a prompt, without pictures; about four characters are a token.
+    most_tokens_in: u64,
+    /// One per model.
+    models: Bill,
+}
+
+impl Estimate {
+    /// Of a comparison whose agent walks along the annotated paths.
+    ///
+    /// # Errors
+    /// When a path cannot be looked along, or a prompt cannot be used.
+    pub(super) fn of(
+        kept: &Kept,
+        settings: &Settings,
+        items: &[Item],
+        agents: &[Agent],
+        (platform, models): (&dyn Platform, &Models<'_>),
+    ) -> Result<Self, Error> {
+        let mut estimate = Self { items: items.len(), walks: 0, most_tokens_in: 0, models: Bill::default() };
+        if is_model(&kept.split) {
+            estimate.models.add(&kept.split, "splits", split(items, agents)?);
+        }
+        if let Some(tools) = &kept.tools {
+            estimate.walks = items.iter().map(|item| texts(agents, item)).sum();
+            let load = estimate.walking(tools, items, agents, platform)?;
+            estimate.models.add(&tools.llm, "walks", load);
+            if is_model(&tools.see) {
+                let places: BTreeSet<_> = items
+                    .iter()
+                    .flat_map(|item| item.episode.viewpoints.iter().map(|viewpoint| (&item.episode.scene, viewpoint)))
+                    .collect();
+                let load = seeing(&describing(settings))?.times(VIEWS * places.len() as u64);
+                estimate.models.add(&tools.see, "sees", load);
+            }
+        }
+        estimate.models.price(models);
+        Ok(estimate)
+    }
+
+    /// What the walks take, by those of a few items.
+    fn walking(
+        &mut self,
+        tools: &ToolsKept,
+        items: &[Item],
+        agents: &[Agent],
+        platform: &dyn Platform,
+    ) -> Result<Load, Error> {
+        let grounder = Lexical::new(Sees::Views);
+        let looks_at_pictures = tools.see == PICTURES;
+        let looks = if tools.see == LABELS { Looks::Labels } else { Looks::Captions(&Typical) };
+        let (mut load, mut rehearsed) = (Load::default(), 0);
+        for item in items.iter().take(FEW) {
+            let agent_view = AgentView::new(platform, &grounder, false, &item.start.scene)?;
+            let names_object = item.episode.target_object.is_some();
+            for text in agents.iter().filter(|agent| agent.name() == TOOLS).flat_map(|agent| agent.texts(item)) {
+                let route = &item.episode.viewpoints;
+                for request in
+                    rehearse(&agent_view, &item.start, &text.text, names_object, (looks, tools.limits), route)?
+                {
+                    let before = load.tokens_in;
+                    let words: Vec<&str> = request.messages.iter().map(|message| message.text.as_str()).collect();
+                    load.call(&words.concat(), REPLY_TOKENS);
+                    self.most_tokens_in = self.most_tokens_in.max(load.tokens_in - before);
+                    load.tokens_in += if looks_at_pictures { VIEWS * picture_tokens(tools.picture_px) } else { 0 };
+                }
+                rehearsed += 1;
+            }
+        }
+        let scaled = |of: u64| of * self.walks as u64 / rehearsed.max(1);
+        Ok(Load { calls: scaled(load.calls), tokens_in: scaled(load.tokens_in), tokens_out: scaled(load.tokens_out) })
+    }
+}
+
+/// How many texts of an item the agent by a language model walks by.
+fn texts(agents: &[Agent], item: &Item) -> usize {
+    agents.iter().filter(|agent| agent.name() == TOOLS).map(|agent| agent.texts(item).count()).sum()
+}
+
+/// What taking the instructions apart takes, each once.
+fn split(items: &[Item], agents: &[Agent]) -> Result<Load, Error> {
+    let mut load = Load::default();
+    let Some(by_phrases) = agents.iter().find(|agent| matches!(agent, Agent::Phrases { .. })) else { return Ok(load) };
+    let texts: BTreeSet<&str> =
+        items.iter().flat_map(|item| by_phrases.texts(item)).map(|text| text.text.as_str()).collect();
+    for text in texts {
+        load.call(&split_prompt(text).unwrap_or_default(), SPLIT_TOKENS);
+    }
+    Ok(load)
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", count(self.items, "item"))?;
+        if self.models.is_empty() {
+            return write!(f, "; no model takes part, so the comparison costs nothing");
+        }
+        if self.walks > 0 {
+            write!(
+                f,
+                ", {} by {TOOLS}; its largest prompt has about {} tokens",
+                count(self.walks, "walk"),
+                self.most_tokens_in
+            )?;
+        }
+        writeln!(
+            f,
+            "\nestimate, if it walks along the annotated paths and looks around at each place, and the ledger is empty:"
+        )?;
+        self.models.fmt(f)
+    }
+}
+
+/// A caption of typical length.
+struct Typical;
+
+impl Describes for Typical {
+    fn describe(&self, _: &View) -> Result<String, ModelError> {
+        Ok("A living room with a grey sofa on the left, a wooden table in the middle, and a doorway to a hallway."
+            .to_owned())
+    }
+}
