@@ -2,7 +2,7 @@
 
 use super::{
     Behaviour, Dialect, Heard, Log,
-    dialect::{End, Said, Wrong},
+    dialect::{End, Said, Wrong, with_calls},
     misdeed::{self, Misdeed, key_of},
     rate::Bucket,
     wire::{Door, Line},
@@ -192,14 +192,17 @@ impl Shared {
             self.tally().unfit += 1;
             Box::new(dialect.refuse(wrong, message))
         };
-        let body = serde_json::from_slice(&arrival.body).map_err(|_| refused(Wrong::Request, "This is not JSON."))?;
+        let body: serde_json::Value =
+            serde_json::from_slice(&arrival.body).map_err(|_| refused(Wrong::Request, "This is not JSON."))?;
         let heard = dialect.heard(&body, arrival.model.as_deref()).map_err(|why| refused(Wrong::Request, why))?;
         let script = self.behaviour.scripts.get(&heard.model);
         let script = script.ok_or_else(|| refused(Wrong::Model, "There is no such model."))?;
         let tokens_in = heard.messages.iter().map(|(_, text)| tokens(text)).sum::<u64>();
         let tokens_in = tokens_in + PICTURE_TOKENS * heard.pictures.len() as u64;
         let (text, end) = cut(script.reply(&heard), &heard);
-        Ok(Said { tokens_in, tokens_out: tokens(&text), text, end, model: heard.model })
+        let tokens_out = tokens(&text);
+        let (text, calls) = with_calls(text, &body);
+        Ok(Said { tokens_in, tokens_out, text, calls, end, model: heard.model })
     }
 }
 

@@ -44,6 +44,10 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
 
 pub(super) fn answer(said: &Said) -> Value {
     let (content, reason) = match said.end {
+        End::Stop if !said.calls.is_empty() => {
+            let call = |(at, (name, input)): (usize, &(String, Value))| json!({ "type": "tool_use", "id": format!("toolu_{at}"), "name": name, "input": input });
+            (said.calls.iter().enumerate().map(call).collect(), "tool_use")
+        }
         End::Stop => (json!([{ "type": "text", "text": said.text }]), "end_turn"),
         End::Length => (json!([{ "type": "text", "text": said.text }]), "max_tokens"),
         End::Filtered | End::Refused => (json!([]), "refusal"),

@@ -33,7 +33,10 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
 }
 
 pub(super) fn answer(said: &Said) -> Value {
-    let content = json!({ "role": "model", "parts": [{ "text": said.text }] });
+    let call = |(name, args): &(String, Value)| json!({ "functionCall": { "name": name, "args": args } });
+    let words = [json!({ "text": said.text })];
+    let parts: Vec<Value> = words.into_iter().chain(said.calls.iter().map(call)).collect();
+    let content = json!({ "role": "model", "parts": parts });
     let candidate = match said.end {
         End::Stop => json!({ "content": content, "finishReason": "STOP", "index": 0 }),
         End::Length => json!({ "content": content, "finishReason": "MAX_TOKENS", "index": 0 }),

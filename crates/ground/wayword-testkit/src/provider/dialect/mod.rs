@@ -36,6 +36,8 @@ pub enum Dialect {
 pub(super) struct Said {
     pub(super) model: String,
     pub(super) text: String,
+    /// Calls of tools: name and arguments. They are not in the text.
+    pub(super) calls: Vec<(String, Value)>,
     pub(super) end: End,
     /// Words of all messages, and 85 for each picture.
     pub(super) tokens_in: u64,
@@ -63,6 +65,21 @@ pub(super) enum Wrong {
     Server,
     Unavailable,
     Overloaded,
+}
+
+/// A reply's words, and its calls of tools: lines with a name and JSON, where the request has tools.
+pub(super) fn with_calls(text: String, request: &Value) -> (String, Vec<(String, Value)>) {
+    let has_tools = request.get("tools").and_then(Value::as_array).is_some_and(|tools| !tools.is_empty());
+    if !has_tools {
+        return (text, Vec::new());
+    }
+    let call = |line: &str| {
+        let (name, arguments) = line.split_once(' ')?;
+        let arguments: Value = serde_json::from_str(arguments).ok()?;
+        arguments.is_object().then(|| (name.to_owned(), arguments))
+    };
+    let (calls, words): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| call(line).is_some());
+    (words.join("\n"), calls.into_iter().filter_map(call).collect())
 }
 
 /// A refusal in words, for dialects that have no mark for one.

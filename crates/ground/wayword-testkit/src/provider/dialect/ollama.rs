@@ -26,8 +26,14 @@ pub(super) fn answer(said: &Said) -> Value {
         End::Length => (said.text.as_str(), "length"),
         End::Filtered | End::Refused => (super::SORRY, "stop"),
     };
+    let mut message = json!({ "role": "assistant", "content": text });
+    if !said.calls.is_empty() {
+        let call =
+            |(name, arguments): &(String, Value)| json!({ "function": { "name": name, "arguments": arguments } });
+        message["tool_calls"] = said.calls.iter().map(call).collect();
+    }
     json!({
-        "model": said.model, "created_at": "2026-01-01T00:00:00Z", "message": { "role": "assistant", "content": text },
+        "model": said.model, "created_at": "2026-01-01T00:00:00Z", "message": message,
         "done": true, "done_reason": reason, "total_duration": 1_000_000, "load_duration": 0,
         "prompt_eval_count": said.tokens_in, "prompt_eval_duration": 0, "eval_count": said.tokens_out, "eval_duration": 0,
     })

@@ -39,6 +39,15 @@ fn content(content: &Value, pictures: &mut Vec<Vec<u8>>) -> Result<String, &'sta
 
 pub(super) fn answer(said: &Said) -> Value {
     let message = match said.end {
+        End::Stop if !said.calls.is_empty() => {
+            let call = |(at, (name, arguments)): (usize, &(String, Value))| {
+                // The arguments are JSON within a text.
+                let function = json!({ "name": name, "arguments": arguments.to_string() });
+                json!({ "id": format!("call_{at}"), "type": "function", "function": function })
+            };
+            let calls: Vec<Value> = said.calls.iter().enumerate().map(call).collect();
+            json!({ "role": "assistant", "content": said.text, "refusal": null, "tool_calls": calls })
+        }
         End::Stop | End::Length => json!({ "role": "assistant", "content": said.text, "refusal": null }),
         End::Filtered => json!({ "role": "assistant", "content": "", "refusal": null }),
         End::Refused => json!({ "role": "assistant", "content": null, "refusal": super::SORRY }),

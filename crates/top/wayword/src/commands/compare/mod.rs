@@ -80,6 +80,8 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
     }
     let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
     let kept = Kept::of(args, &job.settings)?;
+    let models = Models::of(&job)?;
+    tools::refuse_unknown_price(&kept, &models)?;
     if !args.dry_run {
         Calls::ready(&job, output)?;
     }
@@ -92,8 +94,6 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
             "success is judged by distance, because item {item} names no object whose place is known"
         ));
     }
-    let models = Models::of(&job)?;
-    tools::refuse_unknown_price(&kept, &models)?;
     let agents = Agent::all(&kept, args.prior.unwrap_or_default());
     if args.dry_run {
         let estimate = Estimate::of(&kept, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
