@@ -3,9 +3,9 @@
 //!
 //! Architecture invariant: an agent gets an instruction and, at each node, what `sight` makes for it. An agent that
 //! walks by phrases gets how well they fit four views ([`Sight`]). One that reads gets the ways out of the node, its
-//! room, and by which way each thing lies (`Sighting`). Neither gets a pose, a goal or a map. Agents that know more are
-//! in `agents::baselines` and `agents::map_reader`. Nothing here opens a file, and nothing knows a platform beyond the
-//! trait.
+//! room, and by which way each thing lies (`Sighting`). The one by a language model gets the same in words, or pictures.
+//! None of them gets a pose, a goal or a map of the scene. Agents that know more are in `agents::baselines` and
+//! `agents::map_reader`. Nothing here opens a file, and nothing knows a platform beyond the trait.
 
 pub mod agents;
 pub mod comparison;

@@ -7,6 +7,8 @@ use wayword_core::{DVec3, Heading, ViewpointId};
 
 /// Places of the map that a prompt tells, the last ones. The others are only counted.
 const MOST_PLACES: usize = 16;
+/// Ends of ways not taken of a place on the map.
+const MOST_NEW: usize = 8;
 /// Names of things of a place on the map.
 const MOST_NAMES: usize = 6;
 
@@ -27,7 +29,8 @@ pub(super) struct Memory {
 struct Place {
     at: DVec3,
     seen: Option<String>,
-    ways: Vec<ViewpointId>,
+    /// The nodes that its ways lead to, and where these lie: both are known from the hops.
+    ways: Vec<(ViewpointId, DVec3)>,
 }
 
 /// A step that it made.
@@ -47,7 +50,7 @@ impl Memory {
     }
 
     /// Comes to a place, for the first time or again. Returns its number, from 1.
-    pub(super) fn reach(&mut self, id: &ViewpointId, at: DVec3, ways: Vec<ViewpointId>) -> usize {
+    pub(super) fn reach(&mut self, id: &ViewpointId, at: DVec3, ways: Vec<(ViewpointId, DVec3)>) -> usize {
         if let Some(number) = self.numbers.get(id) {
             return *number;
         }
@@ -91,20 +94,35 @@ impl Memory {
         (self.places.iter().enumerate().skip(from).map(|(at, place)| self.told(at + 1, place)).collect(), from)
     }
 
+    /// How far a direction is turned from the way that the agent looked at the start, radians, positive right.
+    pub(super) fn turned(&self, heading: Heading) -> f64 {
+        self.origin.1.turn_to(heading)
+    }
+
     /// A place, told by where it lies from the start, what was seen there, and where its ways lead.
     fn told(&self, number: usize, place: &Place) -> String {
-        let (origin, heading) = self.origin;
-        let off = place.at - origin;
-        let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
-        // Without minus zero.
-        let [right_m, ahead_m, up_m] = [off.dot(right), off.dot(ahead), off.z].map(|m| (m * 10.0).round() / 10.0 + 0.0);
-        let mut known: Vec<usize> = place.ways.iter().filter_map(|way| self.number(way)).collect();
+        let [right_m, ahead_m, up_m] = self.from_start(place.at);
+        let (mut known, mut new) = (Vec::new(), Vec::new());
+        for (way, end) in &place.ways {
+            match self.number(way) {
+                Some(number) => known.push(number),
+                None => new.push(self.from_start(*end)),
+            }
+        }
         known.sort_unstable();
-        let open = place.ways.len() - known.len();
-        let open = (open > 0).then(|| format!("{open} new"));
-        let ways: Vec<String> = known.iter().map(ToString::to_string).chain(open).collect();
+        let new = new.iter().take(MOST_NEW).map(|[right_m, ahead_m, _]| format!("new ({right_m:.1}, {ahead_m:.1})"));
+        let ways: Vec<String> = known.iter().map(ToString::to_string).chain(new).collect();
         let ways = if ways.is_empty() { "nowhere".to_owned() } else { ways.join(", ") };
         let seen = place.seen.as_deref().unwrap_or("you did not look around");
         format!("place {number}: right {right_m:.1}, ahead {ahead_m:.1}, up {up_m:.1}; {seen}; ways to {ways}")
+    }
+
+    /// A point by its distance from the start to the right, ahead and up, as the agent looked there; metres, rounded.
+    fn from_start(&self, point: DVec3) -> [f64; 3] {
+        let (origin, heading) = self.origin;
+        let off = point - origin;
+        let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
+        // Without minus zero.
+        [off.dot(right), off.dot(ahead), off.z].map(|m| (m * 10.0).round() / 10.0 + 0.0)
     }
 }

@@ -142,6 +142,7 @@ impl<'a> Walker<'a> {
     /// Comes to a place, looking along a heading.
     fn arrive(&mut self, at: ViewpointId, heading: Heading) {
         let (ways, _) = self.agent_view.ways(&at, heading);
+        let ways = ways.into_iter().map(|to| (to.clone(), self.agent_view.position(&to))).collect();
         self.number = self.memory.reach(&at, self.agent_view.position(&at), ways);
         (self.here, self.heading, self.scene) = (at, heading, None);
     }
@@ -170,7 +171,7 @@ impl<'a> Walker<'a> {
             },
             names_object: self.names_object,
             memory: &self.memory,
-            here: self.number,
+            here: (self.number, self.heading),
             ways: &ways,
             scene: self.scene.as_ref(),
             limits: &self.tools.limits,

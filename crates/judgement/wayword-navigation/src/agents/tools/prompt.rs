@@ -10,7 +10,7 @@ use super::{
 use crate::error::WalkError;
 use minijinja::{Environment, context};
 use serde::Serialize;
-use wayword_core::{Message, ModelError, Request, Role, Sampling, Tool};
+use wayword_core::{Heading, Message, ModelError, Request, Role, Sampling, Tool};
 use wayword_follower::online::Hop;
 
 const SYSTEM: &str = include_str!("system.j2");
@@ -60,8 +60,8 @@ pub(super) struct State<'a> {
     pub(super) sees: Sees,
     pub(super) names_object: bool,
     pub(super) memory: &'a Memory,
-    /// The number of the place where it stands.
-    pub(super) here: usize,
+    /// The number of the place where it stands, and which way it looks.
+    pub(super) here: (usize, Heading),
     pub(super) ways: &'a [Way],
     /// What it saw there, if it looked.
     pub(super) scene: Option<&'a Scene>,
@@ -98,9 +98,15 @@ pub(super) fn request(state: &State<'_>) -> Result<Request, WalkError> {
     let State { sees, names_object, memory, here, ways, scene, limits, calls, hops, trouble, .. } = *state;
     let system = render(SYSTEM, context! { sees, names_object })?;
     let (places, more) = memory.map();
+    let (here, heading) = here;
+    let facing = match memory.turned(heading).to_degrees().round() {
+        0.0 => "as at the start".to_owned(),
+        deg if deg > 0.0 => format!("{deg} degrees to the right of that"),
+        deg => format!("{} degrees to the left of that", -deg),
+    };
     let told = context! {
         text => quoted(state.text, MOST_TEXT_CHARS),
-        places, more, here, ways, trouble,
+        places, more, here, facing, ways, trouble,
         last => memory.last_steps().collect::<Vec<_>>(),
         note => memory.note,
         looked => scene.is_some(),

@@ -28,14 +28,14 @@ pub(super) struct Toolbox {
 }
 
 /// How the agent sees.
-pub(super) enum Sight {
+enum Sight {
     Labels,
     Pictures,
     Captions(Captions),
 }
 
 /// The captions that a run would give the views, so that both share the answers in the ledger.
-pub(super) struct Captions(Team);
+struct Captions(Box<Team>);
 
 impl Toolbox {
     /// Of a comparison; `None` where it has no such agent.
@@ -74,7 +74,7 @@ impl Sight {
         match tools.see.as_str() {
             LABELS => Ok(Self::Labels),
             PICTURES => Ok(Self::Pictures),
-            _ => Ok(Self::Captions(Captions(Team::new(&describing(settings), Some(calls), platform)?))),
+            _ => Ok(Self::Captions(Captions(Box::new(Team::new(&describing(settings), Some(calls), platform)?)))),
         }
     }
 

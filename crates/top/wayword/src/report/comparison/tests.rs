@@ -5,8 +5,9 @@ use crate::report::replay::tests::{Town, replay};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{Estimate, McNemar, Metric, Rule};
 use wayword_navigation::{
-    comparison::{About, AgentKind, Difference, Listening, Row, Set, Swapped},
+    comparison::{About, AgentKind, Difference, Listening, Row, Set, Swapped, Took},
     swap::Swap,
+    walk::{End, Useless},
 };
 
 const SCRIPT: &str = "<script>alert('x')</script>";
@@ -34,7 +35,14 @@ fn difference(sr: f64, half: f64) -> Difference {
 
 fn row(agent: &str, kind: AgentKind, set: Option<&str>, sr: f64, less: Option<f64>) -> Row {
     let against_first = less.map(|less| difference(less, 0.02));
-    Row { agent: agent.into(), kind, set: set.map(str::to_owned), figures: figures(sr, 0.021), against_first }
+    Row {
+        agent: agent.into(),
+        kind,
+        set: set.map(str::to_owned),
+        figures: figures(sr, 0.021),
+        against_first,
+        took: None,
+    }
 }
 
 fn swapped(agent: &str, swap: Swap, lost: f64, listening: Listening) -> Swapped {
@@ -65,6 +73,7 @@ fn comparison() -> Comparison {
             detector_score: None,
             encoder: Some("some-encoder".into()),
             splitter: "rules".into(),
+            tools: None,
             rule: Rule::Visible,
             level: 0.95,
             resamples: 10_000,
@@ -96,6 +105,30 @@ fn comparison() -> Comparison {
     }
 }
 
+/// The same with an agent by a language model of that name.
+fn with_tools(name: &str) -> Comparison {
+    let mut comparison = comparison();
+    comparison.about.tools = Some((name.into(), "labels".into()));
+    let took = |calls: f64| Took {
+        walks: 1_504,
+        calls: estimate(calls, 0.4),
+        hops: estimate(5.2, 0.1),
+        tokens_in: estimate(800.0 * calls, 120.0),
+        tokens_out: estimate(60.0 * calls, 9.0),
+        usd: Some(estimate(0.0123, 0.0004)),
+        seconds: estimate(9.5, 0.5),
+        most_tokens_in: 1_234,
+        useless: Useless { no_call: 7, no_way: 5, idle: 3, failed: 1 },
+        at_once: 12,
+        ended: BTreeMap::from([(End::Stopped, 1_400), (End::Cap, 90), (End::Circles, 14)]),
+    };
+    for (set, sr, calls) in [("original", 0.4, 8.0), ("central", 0.5, 7.5)] {
+        let row = row("tools", AgentKind::Agent, Some(set), sr, None);
+        comparison.rows.push(Row { took: Some(took(calls)), ..row });
+    }
+    comparison
+}
+
 /// Everything that comes from files is `name`.
 fn named(name: &str) -> Comparison {
     let mut comparison = comparison();
@@ -106,6 +139,7 @@ fn named(name: &str) -> Comparison {
         *text = name.to_owned();
     }
     about.wayword = name.to_owned();
+    about.tools = Some((name.to_owned(), name.to_owned()));
     about.parameters = BTreeMap::from([(name.to_owned(), BTreeMap::from([(name.to_owned(), name.to_owned())]))]);
     comparison.sets = vec![set(name, &format!("{name} "), 0)];
     for row in &mut comparison.rows {
@@ -302,4 +336,19 @@ fn wild_numbers_stay_on_the_page() {
     }
     assert_well_formed(&html(&comparison).unwrap());
     assert!(screen(&comparison).lines().all(|line| line.len() < 400));
+}
+
+#[test]
+fn what_a_walk_by_a_language_model_took_and_what_went_wrong_is_told_everywhere() {
+    let comparison = with_tools("some/model");
+    let shown = screen(&comparison);
+    let (_, took) = shown.split_once("what a walk took").unwrap();
+    insta::assert_snapshot!("took", took.split("original (").next().unwrap());
+    let page = html(&comparison).unwrap();
+    assert_well_formed(&page);
+    for told in [&page, &markdown(&comparison)] {
+        assert!(told.contains("What a walk by a language model took") && told.contains("6400.0"), "{told}");
+        assert!(told.contains("ended by a limit") && told.contains("104"), "{told}");
+    }
+    assert!(!markdown(&super::tests::comparison()).contains("language model"));
 }

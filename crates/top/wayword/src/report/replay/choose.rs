@@ -84,6 +84,7 @@ mod tests {
             steps: vec![],
             end: End::Stopped,
             object: None,
+            effort: None,
         }
     }
 

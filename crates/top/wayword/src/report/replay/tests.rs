@@ -34,6 +34,7 @@ fn step(viewpoint: &str, deg: f64, best: Option<usize>, choice: Choice) -> Step 
         phrase: usize::from(choice == Choice::Stop),
         told: None,
         choice,
+        reason: None,
     }
 }
 
@@ -70,6 +71,7 @@ impl Town {
             ],
             end: End::Stopped,
             object: None,
+            effort: None,
         }
     }
 
@@ -193,4 +195,21 @@ fn what_an_agent_that_reads_was_told_is_shown() {
     assert!(!shown.contains("<script") && !shown.contains("does not look"));
     walk.text.clear();
     assert!(card(&replay(&town, &walk, &score)).contains("(an empty text)"));
+}
+
+#[test]
+fn a_models_reasons_are_shown_and_escaped() {
+    let town = Town::new();
+    let score = town.score();
+    let effort = Effort { calls: 3, tokens_in: 2_100, tokens_out: 90, usd: Some(0.0021), ..Effort::default() };
+    let mut walk = Walk { directions: None, effort: Some(effort), end: End::Circles, ..town.walk("tools") };
+    for step in &mut walk.steps {
+        step.views.clear();
+        step.told = Some(Told { room: None, ways: 2, things: 0 });
+        step.reason = Some(format!("it says left{SCRIPT}{}", "x".repeat(10_000)));
+    }
+    let card = card(&replay(&town, &walk, &score));
+    assert_eq!(card.matches("it says left").count(), 5);
+    assert!(!card.contains("<script") && card.len() < 40_000, "{}", card.len());
+    assert!(card.contains("3 calls, 2100 tokens in, 90 out, $0.0021, 0.0 s") && card.contains("it walked in circles"));
 }
