@@ -18,6 +18,9 @@ pub enum Gait {
     Broken,
 }
 
+/// How far off a place can be on the map that a prompt tells, metres.
+const ROUNDED_M: f64 = 0.15;
+
 /// Plays a model that walks.
 #[derive(Debug, Clone)]
 pub struct Walker {
@@ -69,7 +72,9 @@ impl Walker {
 
     fn along_route(&self, seen: &Prompt<'_>) -> String {
         let Some(Route(route)) = self.routes.get(seen.text) else { return "I do not know this one.".to_owned() };
-        let here = nearest(route, seen.here);
+        // Places of a graph can lie closer together than the map tells, so the number of hops says more.
+        let is_there = |place: &&DVec3| place.distance(seen.here) < ROUNDED_M;
+        let here = route.get(seen.hops).filter(is_there).map_or_else(|| nearest(route, seen.here), |_| seen.hops);
         let Some(next) = route.get(here + 1) else { return call("stop", None, "the route ends here") };
         let way = nearest(&seen.ends(), *next) + 1;
         format!("{}\n{}", call("step", Some(way), "the route leads there"), call("observe", None, "to see it"))

@@ -13,6 +13,7 @@ mod reply;
 mod scene;
 
 pub use limits::Limits;
+pub use prompt::wording;
 pub use rehearsal::rehearse;
 pub use scene::{Describes, Looks};
 

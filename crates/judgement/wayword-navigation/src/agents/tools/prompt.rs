@@ -45,6 +45,12 @@ const STOP_AT: Tool = Tool {
 static TOOLS: [Tool; 3] = [OBSERVE, STEP, STOP];
 static TOOLS_FOR_OBJECTS: [Tool; 3] = [OBSERVE, STEP, STOP_AT];
 
+/// All that is worded here: walks that were asked for in other words are not continued.
+#[must_use]
+pub fn wording() -> String {
+    format!("{SYSTEM}{STATE}{TOOLS:?}{TOOLS_FOR_OBJECTS:?}")
+}
+
 /// How the agent sees, in the prompt's words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -5,17 +5,18 @@ use crate::{
     cli::{Compare, SwapName},
     error::Error,
     platforms,
-    run::hash_of_file,
+    run::{hash_of_file, short_hex},
     settings::{LABELS, Settings, nameable},
 };
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 use wayword_core::Platform;
 use wayword_navigation::{
-    agents::{Limits, Parameters},
+    agents::{Limits, Parameters, wording},
     comparison::UNREAD,
     swap::Swap,
 };
@@ -125,6 +126,9 @@ impl Kept {
                 inputs.insert(format!("instructions {name}"), hash_of_file(&crate::texts::file_of(&source))?);
             }
             instructions.push((name, source));
+        }
+        if args.llm.is_some() {
+            inputs.insert("prompts of tools".to_owned(), short_hex(Sha256::new_with_prefix(wording())));
         }
         let detector = settings.roles.detector.as_deref();
         let thresholds =
