@@ -101,6 +101,17 @@ impl Told {
         self.kind = Kind::of(&self.step);
     }
 
+    /// Changes how it has to do with one of its places.
+    pub(crate) fn change_relation(&mut self, place: usize, relation: Relation) {
+        if let Some(mention) = self.mentions.get_mut(place) {
+            mention.relation = relation;
+        }
+        if let Some(told) = self.step.places.get_mut(place) {
+            told.relation = relation;
+        }
+        self.kind = Kind::of(&self.step);
+    }
+
     /// Changes the sides on which its places are.
     pub(crate) fn change_sides(&mut self, change: impl Fn(Side) -> Side) {
         self.step.side = self.step.side.map(|(relation, side)| (relation, change(side)));
@@ -168,6 +179,12 @@ impl Guide {
     /// Whether it names a room.
     pub(crate) fn tells_room(&self, room: &str) -> bool {
         self.rooms.iter().any(|told| same_room(room, told))
+    }
+
+    /// The places that it names: step by step, the number of the step and the place in its list.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let of_step = |(step, told): (usize, &Told)| (0..told.mentions.len()).map(move |place| (step, place));
+        self.steps.iter().enumerate().flat_map(of_step)
     }
 
     /// Number of its turns.

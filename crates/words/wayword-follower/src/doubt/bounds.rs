@@ -1,0 +1,66 @@
+//! From which gain on words are doubted.
+
+use super::Source;
+use wayword_core::Grade;
+
+/// From which gains on words of one source are doubted, natural logs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bound {
+    /// From here on they are unsure.
+    pub unsure: f64,
+    /// From here on they are likely wrong.
+    pub likely: f64,
+}
+
+/// The bounds of all sources.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds([Bound; Source::ALL.len()]);
+
+impl Bounds {
+    /// The grade of words whose change gains so much; `None` where they are not doubted.
+    #[must_use]
+    pub fn grade(&self, source: Source, gain: f64) -> Option<Grade> {
+        let bound = self.of(source);
+        if gain > bound.likely {
+            Some(Grade::Likely)
+        } else if gain > bound.unsure {
+            Some(Grade::Unsure)
+        } else {
+            None
+        }
+    }
+
+    /// Bounds by which all words are doubted whose change gains anything.
+    #[cfg(test)]
+    pub(crate) fn all() -> Self {
+        Self(Source::ALL.map(|_| Bound { unsure: 0.0, likely: 1.0 }))
+    }
+
+    /// The bounds of a source.
+    #[must_use]
+    pub fn of(&self, source: Source) -> Bound {
+        self.0[source as usize]
+    }
+}
+
+impl Default for Bounds {
+    /// The bounds by which `wayword-measure doubts` finds the shares of people's own words in R2R's train split that
+    /// docs/CHECKS.md names.
+    fn default() -> Self {
+        let bound = |source| {
+            let (unsure, likely) = match source {
+                Source::Turn => (0.5, 1.5),
+                Source::NoTurn => (1.0, 2.5),
+                Source::Side => (1.5, 3.0),
+                Source::Climb => (0.0, 0.2),
+                Source::NoStep => (2.5, 4.0),
+                Source::Way => (2.5, 4.0),
+                Source::Place => (3.0, 5.0),
+                Source::Unknown => (3.0, 5.0),
+                Source::Swap => (2.0, 3.0),
+            };
+            Bound { unsure, likely }
+        };
+        Self(Source::ALL.map(bound))
+    }
+}

@@ -1,0 +1,190 @@
+//! What a reader of a text should doubt: words that fit the known walk better if they are changed, and what would fit.
+//!
+//! [`sites`] says for each change what it gains. [`doubts`] keeps those that gain enough, by [`Bounds`], and [`said`] has the
+//! doubts that checks and ambiguity raise. [`wayword_core::doubt::apart_in`] puts all of them together.
+
+mod bounds;
+mod others;
+pub mod said;
+mod ways;
+
+use crate::{
+    change::{Change, Kind, changes},
+    guide::Guide,
+    one_walk::OneWalk,
+    route::{Known, MOST_STEPS},
+    swap::best_swap,
+    weights::Weights,
+};
+pub use bounds::{Bound, Bounds};
+use wayword_core::{Alternative, Cause, Climb, Doubt, doubt::MOST_ALTERNATIVES};
+use wayword_language::rewording::{Spelt, in_capitals_of};
+
+/// Most places of a text that are looked at. The work grows with their number.
+const MOST_PLACES: usize = 14;
+
+/// What is changed of a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// A turn, to the other side.
+    Turn,
+    /// A turn, left out.
+    NoTurn,
+    /// The side on which a place is.
+    Side,
+    /// A climb, the other way.
+    Climb,
+    /// A step, left out.
+    NoStep,
+    /// How the walk goes by a place: past it, to it, into it.
+    Way,
+    /// A place that the building has, to another one.
+    Place,
+    /// A place that the building does not have, to one that it has.
+    Unknown,
+    /// Two places, each to the other.
+    Swap,
+}
+
+impl Source {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Turn,
+        Self::NoTurn,
+        Self::Side,
+        Self::Climb,
+        Self::NoStep,
+        Self::Way,
+        Self::Place,
+        Self::Unknown,
+        Self::Swap,
+    ];
+
+    /// Its name, on the screen.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Turn => "turn",
+            Self::NoTurn => "turn left out",
+            Self::Side => "side",
+            Self::Climb => "climb",
+            Self::NoStep => "step left out",
+            Self::Way => "way by a place",
+            Self::Place => "place",
+            Self::Unknown => "unknown place",
+            Self::Swap => "places swapped",
+        }
+    }
+
+    /// Why words of this kind are doubted.
+    fn reason(self) -> &'static str {
+        match self {
+            Self::Turn => "the path may turn to the other side here",
+            Self::NoTurn => "the path may not turn here",
+            Self::Side => "it may be on the other side",
+            Self::Climb => "the path may go the other way on the stairs",
+            Self::NoStep => "the path may have no stretch for this",
+            Self::Way => "the path may go by it in another way",
+            Self::Place => "something else would fit the path better here",
+            Self::Unknown => "the building may not have this",
+            Self::Swap => "the path may come to these two places the other way round",
+        }
+    }
+}
+
+/// Words of a text that can be changed, and what the changes gain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site {
+    /// What is changed.
+    pub source: Source,
+    /// The byte range of the words.
+    pub span: [usize; 2],
+    /// What may stand there instead, the most gainful first. There is at least one.
+    pub alternatives: Vec<Alternative>,
+}
+
+impl Site {
+    /// A site; `None` where nothing may stand there instead.
+    fn of(source: Source, span: [usize; 2], alternatives: Vec<Alternative>) -> Option<Self> {
+        (!alternatives.is_empty()).then_some(Self { source, span, alternatives })
+    }
+
+    /// What the best alternative gains, natural logs; negative where all fit worse.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.alternatives.iter().filter_map(|one| one.gain).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// The words of a text that a reader should doubt, by what changing them gains. They may overlap.
+#[must_use]
+pub fn doubts(text: &str, guide: &Guide, known: Known<'_>, weights: &Weights, bounds: &Bounds) -> Vec<Doubt> {
+    let doubt = |site: Site| {
+        let grade = bounds.grade(site.source, site.gain())?;
+        let Site { source, span, mut alternatives } = site;
+        alternatives.retain(|one| one.gain.is_some_and(|gain| gain > 0.0));
+        Some(Doubt { span, grade, cause: Cause::Change, reason: source.reason().to_owned(), alternatives })
+    };
+    sites(text, guide, known, weights).into_iter().filter_map(doubt).collect()
+}
+
+/// What single changes of a text gain for a walk; nothing where the text has too many steps.
+#[must_use]
+pub fn sites(text: &str, guide: &Guide, known: Known<'_>, weights: &Weights) -> Vec<Site> {
+    if guide.is_empty() || guide.len() > MOST_STEPS {
+        return Vec::new();
+    }
+    let spelt = Spelt::of(text);
+    let walk = OneWalk::new(known.building, known.walk, known.heading_rad, weights);
+    let mut sites = single(&spelt, guide, known, weights);
+    sites.extend(ways::sites(&spelt, guide, &walk));
+    sites.extend(others::sites(&spelt, guide, known, &walk));
+    sites.extend(swapped(&spelt, guide, known, weights));
+    sites
+}
+
+/// Turns, sides, climbs and steps.
+fn single(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, weights: &Weights) -> Vec<Site> {
+    let site = |change: Change| {
+        let step = &guide.steps[change.step].step;
+        let turn = || Some(spelt.turn(step.span, step.turn_span?));
+        let (source, span, words) = match change.kind {
+            Kind::Turn => (Source::Turn, turn()?, Some(spelt.other_side(turn()?)?)),
+            Kind::NoTurn => (Source::NoTurn, turn()?, None),
+            Kind::Side => {
+                let span = spelt.side(step.span)?;
+                (Source::Side, span, Some(spelt.other_side(span)?))
+            }
+            Kind::Climb => {
+                let (span, other) = spelt.climb(step.span, step.climb == Some(Climb::Up))?;
+                (Source::Climb, span, Some(other))
+            }
+            Kind::NoStep => (Source::NoStep, spelt.step(step.span)?, None),
+        };
+        Site::of(source, span, vec![Alternative { words, gain: Some(change.gain) }])
+    };
+    changes(guide, known.building, known.walk, known.heading_rad, weights).into_iter().filter_map(site).collect()
+}
+
+/// The two places that gain most the other way round: each may be named where the other is.
+fn swapped(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, weights: &Weights) -> Vec<Site> {
+    let swap = best_swap(guide, known.building, known.walk, known.heading_rad, weights);
+    let site = |(gain, here, there)| {
+        let words = Some(in_capitals_of(spelt.words(here), &spelt.words(there).to_lowercase()));
+        Site::of(Source::Swap, here, vec![Alternative { words, gain: Some(gain) }])
+    };
+    let both = swap.map(|swap| [(swap.gain, swap.spans[0], swap.spans[1]), (swap.gain, swap.spans[1], swap.spans[0])]);
+    both.into_iter().flatten().filter_map(site).collect()
+}
+
+/// The alternatives that gain most, the best first.
+fn best_first(alternatives: impl Iterator<Item = Alternative>) -> Vec<Alternative> {
+    let gain = |one: &Alternative| one.gain.filter(|gain| gain.is_finite());
+    let mut best: Vec<Alternative> = alternatives.filter(|one| gain(one).is_some()).collect();
+    best.sort_by(|a, b| gain(b).unwrap_or(0.0).total_cmp(&gain(a).unwrap_or(0.0)));
+    best.truncate(MOST_ALTERNATIVES);
+    best
+}
+
+#[cfg(test)]
+mod tests;
