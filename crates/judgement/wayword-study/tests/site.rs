@@ -43,7 +43,8 @@ fn study(folder: &Path, mode: Mode) -> Study {
         start_heading: Heading::NORTH,
         film: vec![Picture { file: "picture.jpg".into(), alt: "The walk begins.".into() }],
     };
-    let told = |name: &str| Told { condition: name.into(), text: "Go to the <b>door</b> & stop.".into() };
+    let told =
+        |name: &str| Told { condition: name.into(), text: "Go to the <b>door</b> & stop.".into(), ..Told::default() };
     let texts = match mode {
         Mode::Pair => vec![told("condition-x"), told("condition-y")],
         _ => vec![told("condition-x")],
@@ -54,7 +55,12 @@ fn study(folder: &Path, mode: Mode) -> Study {
         seed: 1,
         per_item: 2,
         per_participant: 1,
-        conditions: vec![Condition { name: "condition-x".into(), kind: Kind::Run, source: String::new() }],
+        conditions: vec![Condition {
+            name: "condition-x".into(),
+            kind: Kind::Run,
+            source: String::new(),
+            shows_doubts: false,
+        }],
         style: String::new(),
     };
     let settings = Settings {

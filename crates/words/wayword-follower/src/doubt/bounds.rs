@@ -49,15 +49,15 @@ impl Default for Bounds {
     fn default() -> Self {
         let bound = |source| {
             let (unsure, likely) = match source {
-                Source::Turn => (0.5, 1.5),
-                Source::NoTurn => (1.0, 2.5),
-                Source::Side => (1.5, 3.0),
-                Source::Climb => (0.0, 0.2),
-                Source::NoStep => (2.5, 4.0),
-                Source::Way => (2.5, 4.0),
-                Source::Place => (3.0, 5.0),
-                Source::Unknown => (3.0, 5.0),
-                Source::Swap => (2.0, 3.0),
+                Source::Turn => (1.0, 2.0),
+                Source::NoTurn => (2.0, 2.7),
+                Source::Side => (1.4, 1.7),
+                Source::Climb => (0.1, 0.2),
+                Source::NoStep => (5.3, 5.7),
+                Source::Way => (1.8, 2.2),
+                Source::Place => (3.6, 4.2),
+                Source::Unknown => (2.0, 2.2),
+                Source::Swap => (2.4, 3.0),
             };
             Bound { unsure, likely }
         };

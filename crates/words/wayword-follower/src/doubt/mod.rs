@@ -17,8 +17,11 @@ use crate::{
     weights::Weights,
 };
 pub use bounds::{Bound, Bounds};
-use wayword_core::{Alternative, Cause, Climb, Doubt, doubt::MOST_ALTERNATIVES};
-use wayword_language::rewording::{Spelt, in_capitals_of};
+use wayword_core::{Alternative, Cause, Climb, Doubt, Finding, Grade, doubt::MOST_ALTERNATIVES};
+use wayword_language::{
+    lexicon::room_name,
+    rewording::{Spelt, in_capitals_of},
+};
 
 /// Most places of a text that are looked at. The work grows with their number.
 const MOST_PLACES: usize = 14;
@@ -109,6 +112,14 @@ impl Site {
         (!alternatives.is_empty()).then_some(Self { source, span, alternatives })
     }
 
+    /// The doubt about it, with the alternatives that gain anything.
+    fn doubt(&self, grade: Grade) -> Doubt {
+        let gains = |one: &&Alternative| one.gain.is_some_and(|gain| gain > 0.0);
+        let alternatives = self.alternatives.iter().filter(gains).cloned().collect();
+        let reason = self.source.reason().to_owned();
+        Doubt { span: self.span, grade, cause: Cause::Change, reason, alternatives }
+    }
+
     /// What the best alternative gains, natural logs; negative where all fit worse.
     #[must_use]
     pub fn gain(&self) -> f64 {
@@ -116,16 +127,44 @@ impl Site {
     }
 }
 
-/// The words of a text that a reader should doubt, by what changing them gains. They may overlap.
+/// The words of a text that a reader should doubt: those that gain enough by a change, and those that a check found wrong or could not
+/// decide about, with what may stand in their place. They may overlap.
 #[must_use]
-pub fn doubts(text: &str, guide: &Guide, known: Known<'_>, weights: &Weights, bounds: &Bounds) -> Vec<Doubt> {
-    let doubt = |site: Site| {
-        let grade = bounds.grade(site.source, site.gain())?;
-        let Site { source, span, mut alternatives } = site;
-        alternatives.retain(|one| one.gain.is_some_and(|gain| gain > 0.0));
-        Some(Doubt { span, grade, cause: Cause::Change, reason: source.reason().to_owned(), alternatives })
-    };
-    sites(text, guide, known, weights).into_iter().filter_map(doubt).collect()
+pub fn doubts(
+    text: &str,
+    guide: &Guide,
+    known: Known<'_>,
+    weights: &Weights,
+    (bounds, findings): (&Bounds, &[Finding]),
+) -> Vec<Doubt> {
+    let sites = sites(text, guide, known, weights);
+    let mut doubts = said::of_findings(findings);
+    for doubt in &mut doubts {
+        if doubt.cause == Cause::Wrong && guide.without(doubt.span).is_some() {
+            doubt.alternatives.push(Alternative { words: None, gain: None });
+        }
+        for site in &sites {
+            if let Some(weaker) = offered(site, doubt) {
+                doubt.take_over(text, &weaker);
+            }
+        }
+    }
+    doubts.extend(sites.into_iter().filter_map(|site| Some(site.doubt(bounds.grade(site.source, site.gain())?))));
+    doubts
+}
+
+/// What a site offers in the place of words that a check doubts. Where a check found the way by a place wrong, any other way may be
+/// right.
+fn offered(site: &Site, doubt: &Doubt) -> Option<Doubt> {
+    let is_wrong = doubt.cause == Cause::Wrong;
+    let is_name = matches!(site.source, Source::Place | Source::Unknown);
+    if is_wrong && site.source == Source::Way {
+        let Site { span, alternatives, .. } = site.clone();
+        let best = alternatives.into_iter().take(1).map(|one| Alternative { gain: None, ..one }).collect();
+        return (span == doubt.span).then_some(Doubt { span, alternatives: best, ..doubt.clone() });
+    }
+    let fits = is_name || (is_wrong && site.span == doubt.span);
+    fits.then(|| site.doubt(doubt.grade))
 }
 
 /// What single changes of a text gain for a walk; nothing where the text has too many steps.
@@ -175,6 +214,11 @@ fn swapped(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, weights: &Weights
     };
     let both = swap.map(|swap| [(swap.gain, swap.spans[0], swap.spans[1]), (swap.gain, swap.spans[1], swap.spans[0])]);
     both.into_iter().flatten().filter_map(site).collect()
+}
+
+/// Whether a name means stairs: one neither goes into them, nor names anything else in their place.
+fn is_stairs(name: &str) -> bool {
+    room_name(name) == Some("stairs")
 }
 
 /// The alternatives that gain most, the best first.

@@ -1,6 +1,6 @@
 //! Other places that would fit the walk better than the ones that a text names.
 
-use super::{MOST_PLACES, Site, Source, best_first};
+use super::{MOST_PLACES, Site, Source, best_first, is_stairs};
 use crate::{
     building::Building,
     guide::{Guide, Mention, Trial},
@@ -28,7 +28,8 @@ pub(super) fn sites(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, walk: &O
     let mut sites = Vec::new();
     for (step, place) in guide.places().take(MOST_PLACES) {
         let mention = &guide.steps[step].mentions[place];
-        let Some(span) = mention.span else { continue };
+        // A word before the name may belong to the old thing alone: "the water fountain".
+        let Some(span) = mention.span.filter(|span| spelt.is_bare(*span)) else { continue };
         let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
         let told = spelt.with_its_article(span);
         let alternative = |name: &Nearness| {
@@ -69,7 +70,8 @@ fn may_be(mention: &Mention, name: &Nearness) -> bool {
     let is_same = |what: &Nearness| {
         agree(&what.name, &name.name) || agree(&name.name, &what.name) || same_room(&what.name, &name.name)
     };
-    is_alike && !mention.meanings.iter().any(is_same)
+    let is_climbed = is_stairs(&name.name) || mention.meanings.iter().any(|what| is_stairs(&what.name));
+    is_alike && !is_climbed && !mention.meanings.iter().any(is_same)
 }
 
 /// A name in the place of another, in its number, with its article and in its capitals. `told` is the old name with the article "a"

@@ -2,7 +2,7 @@
 
 use crate::guide::Guide;
 use wayword_core::{Alternative, Ambiguity, Cause, Check, Doubt, Finding, Grade, Verdict};
-use wayword_language::{lexicon::is_room, reading::Reading};
+use wayword_language::{lexicon::is_room, reading::Reading, rewording::Spelt};
 
 /// The doubts of what checks found of words. How a text is written, and what is not understood of it, says nothing of its path.
 #[must_use]
@@ -31,7 +31,7 @@ pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Am
         alternatives,
     };
     let mut doubts = Vec::new();
-    if let Some((ends, span)) = ambiguity.ends.filter(|ends| *ends > 1).zip(end(guide)) {
+    if let Some((ends, span)) = ambiguity.ends.filter(|ends| *ends > 1).zip(end(&Spelt::of(text), guide)) {
         let apart = ambiguity.told_apart_by.as_deref().zip(text.get(span[0]..span[1]));
         let apart = apart.map(|(by, words)| {
             let joined = if is_room(by) { "in" } else { "by" };
@@ -48,7 +48,7 @@ pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Am
 }
 
 /// The words that say where the walk ends: the last place of the step at which it stops, or else that step.
-fn end(guide: &Guide) -> Option<[usize; 2]> {
+fn end(spelt: &Spelt<'_>, guide: &Guide) -> Option<[usize; 2]> {
     let stop = guide.steps.iter().rev().find(|told| told.step.stops).or(guide.steps.last())?;
-    Some(stop.mentions.iter().rev().find_map(|mention| mention.span).unwrap_or(stop.step.span))
+    stop.mentions.iter().rev().find_map(|mention| mention.span).or_else(|| spelt.step(stop.step.span))
 }

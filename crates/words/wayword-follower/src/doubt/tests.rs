@@ -8,7 +8,7 @@ const WALK: [usize; 5] = [0, 1, 2, 5, 6];
 fn found(text: &str, bounds: &Bounds) -> Vec<Doubt> {
     let building = Building::of(&surveyed());
     let known = Known { building: &building, walk: &WALK, heading_rad: 0.0 };
-    apart_in(text, doubts(text, &Guide::read(text), known, Weights::fitted(), bounds))
+    apart_in(text, doubts(text, &Guide::read(text), known, Weights::fitted(), (bounds, &[])))
 }
 
 /// The doubted words, each with what may stand there; "-" where they may be left out.
@@ -30,6 +30,25 @@ fn a_wrong_turn_is_doubted_and_the_other_side_is_offered_in_the_text_s_own_words
     assert_eq!(told[0].0, "make a sharp Left turn");
     assert!(told[0].1.contains(&"make a sharp Right turn"), "{told:?}");
     assert_eq!(found[0].grade, Grade::Likely);
+}
+
+#[test]
+fn words_that_a_check_found_wrong_may_be_left_out_and_those_it_cannot_decide_about_get_names() {
+    let building = Building::of(&surveyed());
+    let known = Known { building: &building, walk: &WALK, heading_rad: 0.0 };
+    let text = "Walk down the hallway. Walk down the hallway and turn right. Walk past the bed and wait by the oven.";
+    let span = |words: &str| text.rfind(words).map(|from| [from, from + words.len()]);
+    let finding = |check, verdict, words| Finding { check, verdict, reason: "r".into(), span: span(words) };
+    let findings = [
+        finding(Check::Order, Verdict::Fail, "Walk down the hallway"),
+        finding(Check::Landmarks, Verdict::Unverified, "bed"),
+    ];
+    let doubts = doubts(text, &Guide::read(text), known, Weights::fitted(), (&Bounds::default(), &findings));
+    let doubts = apart_in(text, doubts);
+    let told = told(text, &doubts);
+    assert_eq!((told[0].0, told[0].1.first()), ("Walk down the hallway", Some(&"-")), "{told:?}");
+    let bed = told.iter().find(|(words, _)| *words == "bed");
+    assert!(bed.is_some_and(|(_, offered)| !offered.is_empty()), "{told:?}");
 }
 
 #[test]

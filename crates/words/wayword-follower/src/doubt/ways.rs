@@ -1,6 +1,6 @@
 //! How the walk goes by a place, told in another way: "walk to the sofa" for "walk past the sofa".
 
-use super::{MOST_PLACES, Site, Source, best_first};
+use super::{MOST_PLACES, Site, Source, best_first, is_stairs};
 use crate::{
     guide::{Guide, Mention},
     one_walk::OneWalk,
@@ -49,6 +49,6 @@ pub(super) fn sites(spelt: &Spelt<'_>, guide: &Guide, walk: &OneWalk<'_>) -> Vec
 
 /// Whether one goes so by such a place: one does not go into a chair.
 fn is_way_by(mention: &Mention, relation: Relation) -> bool {
-    let is_room = mention.meanings.first().is_some_and(|what| what.is_room);
+    let is_room = mention.meanings.first().is_some_and(|what| what.is_room && !is_stairs(&what.name));
     is_room || matches!(relation, Relation::To | Relation::Past)
 }
