@@ -10,20 +10,20 @@ use std::cmp::Reverse;
 #[serde(rename_all = "snake_case")]
 pub enum Grade {
     /// Nothing says that they are right.
-    Unsure,
+    Uncertain,
     /// They are likely wrong.
     Likely,
 }
 
 impl Grade {
     /// Both, the stronger one first.
-    pub const ALL: [Self; 2] = [Self::Likely, Self::Unsure];
+    pub const ALL: [Self; 2] = [Self::Likely, Self::Uncertain];
 
     /// Its name, in files and on the screen.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Self::Unsure => "unsure",
+            Self::Uncertain => "uncertain",
             Self::Likely => "likely",
         }
     }
@@ -32,7 +32,7 @@ impl Grade {
     #[must_use]
     pub fn told(self) -> &'static str {
         match self {
-            Self::Unsure => "unsure",
+            Self::Uncertain => "uncertain",
             Self::Likely => "likely wrong",
         }
     }
@@ -227,7 +227,7 @@ mod tests {
     fn doubts_of_the_same_words_are_one_with_the_best_alternative_first() {
         let turn = [9, 18];
         let doubts = vec![
-            doubt(turn, Grade::Unsure, &[(Some("Turn right"), 1.0), (Some("turn LEFT"), 9.0)]),
+            doubt(turn, Grade::Uncertain, &[(Some("Turn right"), 1.0), (Some("turn LEFT"), 9.0)]),
             doubt(turn, Grade::Likely, &[(None, 3.0)]),
         ];
         let apart = apart_in(TEXT, doubts);
@@ -239,14 +239,14 @@ mod tests {
     fn a_stronger_doubt_says_what_a_weaker_one_within_it_offers() {
         let doubts = vec![
             doubt([0, 19], Grade::Likely, &[(None, 5.0)]),
-            doubt([14, 18], Grade::Unsure, &[(Some("right"), 1.0), (None, 2.0)]),
+            doubt([14, 18], Grade::Uncertain, &[(Some("right"), 1.0), (None, 2.0)]),
         ];
         assert_eq!(told(&apart_in(TEXT, doubts)), [([0, 18], vec![None, Some("Walk on. Turn right")])]);
     }
 
     #[test]
     fn marks_and_blanks_around_words_are_not_doubted() {
-        let doubts = vec![doubt([7, 19], Grade::Unsure, &[]), doubt([7, 9], Grade::Unsure, &[])];
+        let doubts = vec![doubt([7, 19], Grade::Uncertain, &[]), doubt([7, 9], Grade::Uncertain, &[])];
         assert_eq!(told(&apart_in(TEXT, doubts)), [([9, 18], vec![])]);
     }
 

@@ -6,8 +6,8 @@ use wayword_core::Grade;
 /// From which gains on words of one source are doubted, natural logs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
-    /// From here on they are unsure.
-    pub unsure: f64,
+    /// From here on they are uncertain.
+    pub uncertain: f64,
     /// From here on they are likely wrong.
     pub likely: f64,
 }
@@ -23,8 +23,8 @@ impl Bounds {
         let bound = self.of(source);
         if gain > bound.likely {
             Some(Grade::Likely)
-        } else if gain > bound.unsure {
-            Some(Grade::Unsure)
+        } else if gain > bound.uncertain {
+            Some(Grade::Uncertain)
         } else {
             None
         }
@@ -33,7 +33,7 @@ impl Bounds {
     /// Bounds by which all words are doubted whose change gains anything.
     #[cfg(test)]
     pub(crate) fn all() -> Self {
-        Self(Source::ALL.map(|_| Bound { unsure: 0.0, likely: 1.0 }))
+        Self(Source::ALL.map(|_| Bound { uncertain: 0.0, likely: 1.0 }))
     }
 
     /// The bounds of a source.
@@ -48,7 +48,7 @@ impl Default for Bounds {
     /// docs/CHECKS.md names.
     fn default() -> Self {
         let bound = |source| {
-            let (unsure, likely) = match source {
+            let (uncertain, likely) = match source {
                 Source::Turn => (1.0, 2.0),
                 Source::NoTurn => (2.0, 2.7),
                 Source::Side => (1.4, 1.7),
@@ -59,7 +59,7 @@ impl Default for Bounds {
                 Source::Unknown => (2.0, 2.2),
                 Source::Swap => (2.4, 3.0),
             };
-            Bound { unsure, likely }
+            Bound { uncertain, likely }
         };
         Self(Source::ALL.map(bound))
     }

@@ -167,10 +167,16 @@ fn offered(site: &Site, doubt: &Doubt) -> Option<Doubt> {
     fits.then(|| site.doubt(doubt.grade))
 }
 
+/// Whether a text has too many steps for its changes to be looked at.
+#[must_use]
+pub fn is_too_long(guide: &Guide) -> bool {
+    guide.len() > MOST_STEPS
+}
+
 /// What single changes of a text gain for a walk; nothing where the text has too many steps.
 #[must_use]
 pub fn sites(text: &str, guide: &Guide, known: Known<'_>, weights: &Weights) -> Vec<Site> {
-    if guide.is_empty() || guide.len() > MOST_STEPS {
+    if guide.is_empty() || is_too_long(guide) {
         return Vec::new();
     }
     let spelt = Spelt::of(text);

@@ -10,7 +10,7 @@ pub fn of_findings(findings: &[Finding]) -> Vec<Doubt> {
     let doubt = |finding: &Finding| {
         let (grade, cause) = match finding.verdict {
             Verdict::Pass => return None,
-            Verdict::Unverified => (Grade::Unsure, Cause::Unverified),
+            Verdict::Unverified => (Grade::Uncertain, Cause::Unverified),
             Verdict::Fail => (Grade::Likely, Cause::Wrong),
         };
         let is_of_path = !matches!(finding.check, Check::Form | Check::Leak | Check::Coverage);
@@ -25,7 +25,7 @@ pub fn of_findings(findings: &[Finding]) -> Vec<Doubt> {
 pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Ambiguity) -> Vec<Doubt> {
     let doubt = |span, reason, alternatives| Doubt {
         span,
-        grade: Grade::Unsure,
+        grade: Grade::Uncertain,
         cause: Cause::Ambiguous,
         reason,
         alternatives,

@@ -71,7 +71,7 @@ fn findings_are_doubts_but_not_those_about_form_and_what_is_not_understood() {
         finding(Check::Landmarks, Verdict::Unverified),
     ];
     let doubts: Vec<_> = said::of_findings(&findings).into_iter().map(|doubt| (doubt.grade, doubt.cause)).collect();
-    assert_eq!(doubts, [(Grade::Likely, Cause::Wrong), (Grade::Unsure, Cause::Unverified)]);
+    assert_eq!(doubts, [(Grade::Likely, Cause::Wrong), (Grade::Uncertain, Cause::Unverified)]);
 }
 
 #[test]

@@ -241,9 +241,8 @@ impl Checking<'_> {
             checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(rejection));
             let mut shown = CheckedText::of(text, &checked);
             if how.doubts {
-                let followed = followed.as_ref().and_then(|followed| followed.as_ref().ok());
                 let words = (text.words.as_str(), text.tag.as_deref());
-                shown.doubts = Some(doubts(followed, words, &checked, ambiguity.as_ref()));
+                shown.doubted = Some(doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));
             }
             shown.ambiguity = ambiguity;
             if let Some(told) = told {

@@ -1,7 +1,7 @@
 //! What `wayword check` says of a file.
 
 use super::walks::Text;
-use crate::{count::count, follow::Shares};
+use crate::{count::count, doubts::Doubted, follow::Shares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 use wayword_checks::Checked;
@@ -88,7 +88,7 @@ pub struct CheckedText {
     pub ambiguity: Option<Ambiguity>,
     /// The words that a reader should doubt, where that was asked for. A report lists them in [`CheckReport::doubted`].
     #[serde(skip)]
-    pub doubts: Option<Vec<Doubt>>,
+    pub doubted: Option<Doubted>,
     /// The style that it was written in, where the file says so.
     #[serde(skip)]
     pub style: Option<String>,
@@ -110,14 +110,13 @@ pub struct DoubtedText {
     pub world: &'static str,
     /// Why it could not be followed, where it could not: then no other wording is known.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub unfollowed: Option<String>,
+    pub unfollowed: Option<&'static str>,
     /// The doubts, in the order of the text and apart from each other.
     pub doubts: Vec<Doubt>,
 }
 
 impl DoubtedText {
-    fn of(text: &CheckedText, doubts: Vec<Doubt>) -> Self {
-        let unfollowed = text.ambiguity.as_ref().and_then(|ambiguity| ambiguity.unverified.clone());
+    fn of(text: &CheckedText, Doubted { doubts, unfollowed }: Doubted) -> Self {
         let (path, style, words) = (text.path.clone(), text.style.clone(), text.text.clone());
         Self { path, style, text: words, verdict: text.verdict, world: text.world, unfollowed, doubts }
     }
@@ -135,15 +134,15 @@ impl CheckedText {
         let (path, words) = (text.path.clone(), text.words.clone());
         let (verdict, world) = (checked.verdict(), checked.world.name());
         let style = text.style.as_ref().map(|style| style.name.clone());
-        let (route, turn_gain, ambiguity, doubts) = (None, None, None, None);
-        Self { path, text: words, verdict, world, findings, route, turn_gain, ambiguity, doubts, style }
+        let (route, turn_gain, ambiguity, doubted) = (None, None, None, None);
+        Self { path, text: words, verdict, world, findings, route, turn_gain, ambiguity, doubted, style }
     }
 }
 
 impl CheckReport {
     pub(super) fn add(&mut self, mut text: CheckedText, findings: &[Finding]) {
-        if let Some(doubts) = text.doubts.take() {
-            self.doubted.push(DoubtedText::of(&text, doubts));
+        if let Some(doubted) = text.doubted.take() {
+            self.doubted.push(DoubtedText::of(&text, doubted));
         }
         for check in Check::ALL {
             let of_check: Vec<Finding> = findings.iter().filter(|finding| finding.check == check).cloned().collect();
@@ -213,8 +212,8 @@ impl fmt::Display for Shown<'_> {
         }
         if !report.doubted.is_empty() {
             let with = |grade| report.doubted.iter().filter(|text| text.has(grade)).count();
-            let [likely, unsure] = Grade::ALL.map(with);
-            write!(f, "\ndoubts: {} likely wrong, {} not sure", texts_with(likely), texts_with(unsure))?;
+            let [likely, uncertain] = Grade::ALL.map(with);
+            write!(f, "\ndoubts: {} likely wrong, {} not sure", texts_with(likely), texts_with(uncertain))?;
         }
         if let Some(file) = &report.calibration {
             write!(f, "\ncalibration: {file}")?;

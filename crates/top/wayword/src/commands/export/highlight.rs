@@ -36,16 +36,22 @@ struct Counts {
     /// Texts that nobody could follow, so that no other words are known.
     unfollowed: usize,
     words: usize,
-    /// Words that are likely wrong, and words that are unsure.
+    /// Words that are likely wrong, and words that are uncertain.
     likely: usize,
-    unsure: usize,
+    uncertain: usize,
 }
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Counts { texts, doubted, unfollowed, words, likely, unsure } = &self.highlights;
+        let Counts { texts, doubted, unfollowed, words, likely, uncertain } = &self.highlights;
         writeln!(f, "{}: {doubted} with words to doubt", count(*texts, "text"))?;
-        writeln!(f, "{}: {likely} {}, {unsure} {}", count(*words, "word"), Grade::Likely.told(), Grade::Unsure.told())?;
+        writeln!(
+            f,
+            "{}: {likely} {}, {uncertain} {}",
+            count(*words, "word"),
+            Grade::Likely.told(),
+            Grade::Uncertain.told()
+        )?;
         if *unfollowed > 0 {
             writeln!(f, "not followed: {}", count(*unfollowed, "text"))?;
         }
@@ -68,7 +74,7 @@ pub(super) fn write(args: &Export, name: &Path, output: &Output) -> Result<Exit,
         unfollowed: summary.unfollowed,
         words: summary.words,
         likely: summary.of(Grade::Likely),
-        unsure: summary.of(Grade::Unsure),
+        uncertain: summary.of(Grade::Uncertain),
     };
     let written = Written { page, file, highlights: counts };
     output.data(&written, &written);

@@ -26,7 +26,7 @@ const TEXT: &str = "Turn left & walk past the \u{201c}Türe\u{201d}.";
 fn words_are_marked_with_their_alternatives_below() {
     let doubts = vec![
         doubt([0, 9], Grade::Likely, &[Some("Turn right"), None]),
-        doubt([12, 16], Grade::Unsure, &[Some("<script>alert(1)</script>")]),
+        doubt([12, 16], Grade::Uncertain, &[Some("<script>alert(1)</script>")]),
     ];
     let page = html(&highlights(TEXT, doubts)).unwrap();
     assert!(page.contains("<mark class=\"likely\" id=\"w1-1\">Turn left</mark>"), "{page}");
@@ -36,7 +36,7 @@ fn words_are_marked_with_their_alternatives_below() {
 
 #[test]
 fn what_files_say_is_escaped() {
-    let doubts = vec![doubt([12, 16], Grade::Unsure, &[Some("<script>alert(1)</script>")])];
+    let doubts = vec![doubt([12, 16], Grade::Uncertain, &[Some("<script>alert(1)</script>")])];
     let page = html(&highlights(TEXT, doubts)).unwrap();
     for raw in ["<script", "<img", "may <b>", "left & "] {
         assert!(!page.contains(raw), "{raw}");
@@ -46,10 +46,10 @@ fn what_files_say_is_escaped() {
 
 #[test]
 fn texts_words_and_doubts_are_counted() {
-    let doubts = vec![doubt([0, 9], Grade::Likely, &[]), doubt([24, 32], Grade::Unsure, &[])];
+    let doubts = vec![doubt([0, 9], Grade::Likely, &[]), doubt([24, 32], Grade::Uncertain, &[])];
     let Highlights { summary, .. } = highlights(TEXT, doubts);
     assert_eq!((summary.texts, summary.doubted, summary.unfollowed, summary.words), (1, 1, 0, 7));
-    assert_eq!((summary.of(Grade::Likely), summary.of(Grade::Unsure)), (2, 2));
+    assert_eq!((summary.of(Grade::Likely), summary.of(Grade::Uncertain)), (2, 2));
     assert_eq!(summary.causes["change"], Tally { texts: 1, doubts: 2, words: 4 });
 }
 
