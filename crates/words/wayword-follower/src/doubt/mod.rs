@@ -112,6 +112,11 @@ impl Site {
         (!alternatives.is_empty()).then_some(Self { source, span, alternatives })
     }
 
+    /// Whether it is about a turn or a climb.
+    fn tells_motion(&self) -> bool {
+        matches!(self.source, Source::Turn | Source::NoTurn | Source::Climb)
+    }
+
     /// The doubt about it, with the alternatives that gain anything.
     fn doubt(&self, grade: Grade) -> Doubt {
         let gains = |one: &&Alternative| one.gain.is_some_and(|gain| gain > 0.0);
@@ -140,7 +145,14 @@ pub fn doubts(
     let sites = sites(text, guide, known, weights);
     let mut doubts = said::of_findings(findings);
     for doubt in &mut doubts {
-        if doubt.cause == Cause::Wrong && guide.without(doubt.span).is_some() {
+        let is_wrong = doubt.cause == Cause::Wrong;
+        let motion = sites.iter().filter(|site| site.tells_motion() && is_within(doubt.span, site.span));
+        // A check names the side of a turn alone; "turn left" is what may be told otherwise.
+        if let Some(motion) = motion.min_by_key(|site| site.span[1] - site.span[0]).filter(|_| is_wrong) {
+            doubt.span = motion.span;
+        }
+        let turns = |site: &Site| site.tells_motion() && is_within(site.span, doubt.span) && site.gain() > 0.0;
+        if is_wrong && !sites.iter().any(turns) && guide.without(doubt.span).is_some() {
             doubt.alternatives.push(Alternative { words: None, gain: None });
         }
         for site in &sites {
@@ -153,6 +165,11 @@ pub fn doubts(
     doubts
 }
 
+/// Whether a byte range lies in another.
+fn is_within(inner: [usize; 2], outer: [usize; 2]) -> bool {
+    outer[0] <= inner[0] && inner[1] <= outer[1]
+}
+
 /// What a site offers in the place of words that a check doubts. Where a check found the way by a place wrong, any other way may be
 /// right.
 fn offered(site: &Site, doubt: &Doubt) -> Option<Doubt> {
@@ -163,7 +180,7 @@ fn offered(site: &Site, doubt: &Doubt) -> Option<Doubt> {
         let best = alternatives.into_iter().take(1).map(|one| Alternative { gain: None, ..one }).collect();
         return (span == doubt.span).then_some(Doubt { span, alternatives: best, ..doubt.clone() });
     }
-    let fits = is_name || (is_wrong && site.span == doubt.span);
+    let fits = is_name || (is_wrong && (site.span == doubt.span || site.tells_motion()));
     fits.then(|| site.doubt(doubt.grade))
 }
 

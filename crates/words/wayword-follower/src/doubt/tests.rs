@@ -86,6 +86,21 @@ fn an_ambiguous_end_is_doubted_with_what_tells_it_apart() {
     assert_eq!(said::of_ambiguity(text, &guide, &reading, &clear), []);
 }
 
+#[test]
+fn a_turn_that_a_check_found_wrong_is_doubted_as_a_whole_and_the_other_side_comes_first() {
+    let building = Building::of(&surveyed());
+    let known = Known { building: &building, walk: &WALK, heading_rad: 0.0 };
+    let text = TO_KITCHEN.replace("turn right", "turn left");
+    let from = text.find("left").unwrap();
+    let finding =
+        Finding { check: Check::Turns, verdict: Verdict::Fail, reason: "r".into(), span: Some([from, from + 4]) };
+    let found = (&Bounds::default(), &[finding][..]);
+    let doubts = apart_in(&text, doubts(&text, &Guide::read(&text), known, Weights::fitted(), found));
+    let told = told(&text, &doubts);
+    assert_eq!((told[0].0, told[0].1.first()), ("turn left", Some(&"turn right")), "{told:?}");
+    assert_eq!(doubts[0].cause, Cause::Wrong);
+}
+
 /// Texts of words that mean something to the follower, and of others, with every change told, however little it gains.
 #[test]
 fn whatever_the_text_doubts_are_apart_in_the_text_and_few() {
@@ -99,6 +114,7 @@ fn whatever_the_text_doubts_are_apart_in_the_text_and_few() {
         let words: Vec<&str> = (0..14).filter_map(|_| WORDS.choose(&mut random).copied()).collect();
         let text = words.join(" ");
         let all = found(&text, &Bounds::all());
+        assert!(all.len() <= wayword_core::doubt::MOST_DOUBTS, "{text}");
         assert!(all.windows(2).all(|pair| pair[0].span[1] <= pair[1].span[0]), "{text}");
         for doubt in &all {
             assert!(text.get(doubt.span[0]..doubt.span[1]).is_some_and(|words| !words.is_empty()), "{text}");
