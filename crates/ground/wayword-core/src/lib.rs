@@ -12,6 +12,7 @@ pub mod caption;
 pub mod contain;
 pub mod depth;
 pub mod detector;
+pub mod doubt;
 pub mod encoder;
 pub mod failure;
 pub mod from_above;
@@ -42,6 +43,7 @@ pub use caption::{
 pub use contain::contained;
 pub use depth::Depth;
 pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring, apart};
+pub use doubt::{Alternative, Cause, Doubt, Grade};
 pub use encoder::{Grounder, TextEncoder};
 pub use failure::Failure;
 pub use from_above::FromAbove;

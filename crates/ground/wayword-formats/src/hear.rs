@@ -3,7 +3,8 @@
 //! The file is one JSON object of items by name. Fields: those of R2R's path (`scan`, `path`, `heading`), `original_instr`
 //! (the text), `numbered_instruction` (its tokens, each followed by its number from 0: `turn (0) left (1) . (2)`) and
 //! `id2label`, from token numbers to a label. A key is one number, or numbers that ascend: "5-8" means tokens 5 to 8.
-//! Labels are 1 (right), 0 and -1 (wrong). Other fields are not read.
+//! Labels are 1 (right), 0 and -1 (wrong). `id2gold_alternative`, which may be missing, has under the same keys what people would
+//! say instead: words, several of them between slashes, or `REMOVE`. Other fields are not read.
 
 use crate::{Episode, FormatError, Item, ItemPlace, input, strict::Strict};
 use serde::de::DeserializeSeed;
@@ -32,6 +33,8 @@ pub struct LabelledSpan {
     pub span: [usize; 2],
     /// Whether people called it right.
     pub is_right: bool,
+    /// What people would say instead; `None` where they would leave the words out.
+    pub corrections: Vec<Option<String>>,
 }
 
 /// Reads a file of HEAR, plain or gzip.
@@ -82,7 +85,11 @@ fn labelled(mut item: Item<'_>, name: String) -> Result<LabelledText, FormatErro
     let Value::Object(labels) = labels else {
         return Err(item.expected("id2label", "an object", &labels, "give a label for each range of tokens"));
     };
-    let spans = labels.into_iter().map(|(key, label)| labelled_span(&item, &tokens, key, &label));
+    let corrections = corrections(&mut item)?;
+    let spans = labels.into_iter().map(|(key, label)| {
+        let corrections = corrections.get(&key).map(|told| told_instead(&item, &key, told)).transpose()?;
+        labelled_span(&item, &tokens, (key, &label), corrections.unwrap_or_default())
+    });
     let spans = spans.collect::<Result<Vec<_>, _>>()?;
     Ok(LabelledText { name, episode, text, spans })
 }
@@ -115,11 +122,31 @@ fn tokens(item: &mut Item<'_>, text: &str) -> Result<Vec<[usize; 2]>, FormatErro
     Ok(tokens)
 }
 
+/// What people would say instead, by keys.
+fn corrections(item: &mut Item<'_>) -> Result<Map<String, Value>, FormatError> {
+    const FIELD: &str = "id2gold_alternative";
+    match item.take_optional(FIELD) {
+        None => Ok(Map::new()),
+        Some(Value::Object(told)) => Ok(told),
+        Some(other) => Err(item.expected(FIELD, "an object", &other, "give words for each range of tokens")),
+    }
+}
+
+/// The words of a correction, which are between slashes.
+fn told_instead(item: &Item<'_>, key: &str, told: &Value) -> Result<Vec<Option<String>>, FormatError> {
+    let Value::String(told) = told else {
+        let field = format!("id2gold_alternative.{key:.40}");
+        return Err(item.expected(&field, "a string", told, "give words, or REMOVE"));
+    };
+    let words = told.split('/').map(str::trim).filter(|words| !words.is_empty());
+    Ok(words.map(|words| (words != "REMOVE").then(|| words.to_owned())).collect())
+}
+
 fn labelled_span(
     item: &Item<'_>,
     tokens: &[[usize; 2]],
-    key: String,
-    label: &Value,
+    (key, label): (String, &Value),
+    corrections: Vec<Option<String>>,
 ) -> Result<LabelledSpan, FormatError> {
     // A hostile key may be as long as its file.
     let field = format!("id2label.{key:.40}");
@@ -136,7 +163,7 @@ fn labelled_span(
         let problem = format!("it names token {last}, but the text has {}", tokens.len());
         return Err(item.wrong(&field, problem, "count the tokens of numbered_instruction from 0"));
     };
-    Ok(LabelledSpan { key, span: [from[0], to[1]], is_right })
+    Ok(LabelledSpan { key, span: [from[0], to[1]], is_right, corrections })
 }
 
 /// The first and the last token that a key names.

@@ -57,6 +57,23 @@ fn a_key_names_the_words_from_its_first_token_to_its_last() {
 }
 
 #[test]
+fn corrections_are_words_between_slashes_or_to_leave_out() {
+    let corrections = |told: Value| {
+        let mut file = file();
+        file["7_0"]["id2gold_alternative"] = told;
+        let texts = read(&file.to_string()).unwrap();
+        texts[0].spans.iter().map(|span| span.corrections.clone()).collect::<Vec<_>>()
+    };
+    let told = corrections(json!({"4-5": "REMOVE/old table / sofa", "7": "stop", "99": "none"}));
+    let words = |told: &str| Some(told.to_owned());
+    assert_eq!(told, [vec![], vec![None, words("old table"), words("sofa")], vec![words("stop")], vec![]]);
+    assert_eq!(corrections(json!({})).concat(), []);
+    assert!(refusal("id2gold_alternative", json!([1])).contains("expected an object"));
+    let refused = refusal("id2gold_alternative", json!({"4-5": 3}));
+    assert!(refused.starts_with("item 0 (id 7_0): field \"id2gold_alternative.4-5\": expected a string"), "{refused}");
+}
+
+#[test]
 fn tokens_that_are_not_those_of_the_text_are_refused() {
     for (numbered, problem) in [
         ("turn (0) right (1)", "token 1 (\"right\") is not the next word of original_instr"),

@@ -16,7 +16,7 @@ pub use results::{Results, results};
 pub use site::{Listen, Security, Started, serve};
 pub use store::{Forgotten, Invited, Progress, Reconciled, Reconciliation, Row, now_ms};
 pub use study::{
-    Answer, Choice, Codes, Condition, Data, Item, Kind, Mode, Move, Participant, Passed, Picture, Place, Plan,
+    Answer, Choice, Codes, Condition, Data, Item, Kind, Mark, Mode, Move, Participant, Passed, Picture, Place, Plan,
     Question, Recruiter, Route, Scene, Settings, Slot, SlotState, Status, Study, StudyError, Told,
 };
 pub use wording::{QUESTIONS, STATEMENTS, Scale};

@@ -16,10 +16,10 @@ use std::{
     time::Duration,
 };
 use tempfile::TempDir;
-use wayword_core::{Heading, SceneId, ViewpointId};
+use wayword_core::{Grade, Heading, SceneId, ViewpointId};
 use wayword_study::{
-    Condition, Item, Kind, Listen, Mode, Picture, Place, Plan, Recruiter, Route, Scene, Security, Settings, Started,
-    Study, Told, serve,
+    Condition, Item, Kind, Listen, Mark, Mode, Picture, Place, Plan, Recruiter, Route, Scene, Security, Settings,
+    Started, Study, Told, serve,
 };
 
 /// Words that no page may have: the conditions, the scene, the route, the goal.
@@ -43,7 +43,8 @@ fn study(folder: &Path, mode: Mode) -> Study {
         start_heading: Heading::NORTH,
         film: vec![Picture { file: "picture.jpg".into(), alt: "The walk begins.".into() }],
     };
-    let told = |name: &str| Told { condition: name.into(), text: "Go to the <b>door</b> & stop.".into() };
+    let told =
+        |name: &str| Told { condition: name.into(), text: "Go to the <b>door</b> & stop.".into(), ..Told::default() };
     let texts = match mode {
         Mode::Pair => vec![told("condition-x"), told("condition-y")],
         _ => vec![told("condition-x")],
@@ -54,7 +55,12 @@ fn study(folder: &Path, mode: Mode) -> Study {
         seed: 1,
         per_item: 2,
         per_participant: 1,
-        conditions: vec![Condition { name: "condition-x".into(), kind: Kind::Run, source: String::new() }],
+        conditions: vec![Condition {
+            name: "condition-x".into(),
+            kind: Kind::Run,
+            source: String::new(),
+            shows_doubts: false,
+        }],
         style: String::new(),
     };
     let settings = Settings {
@@ -90,9 +96,13 @@ fn listen(security: Security) -> Listen {
 
 impl Site {
     fn new(mode: Mode, set: impl FnOnce(&mut Settings)) -> Self {
+        Self::with(mode, |study| set(&mut study.settings))
+    }
+
+    fn with(mode: Mode, set: impl FnOnce(&mut Study)) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut study = study(folder.path(), mode);
-        set(&mut study.settings);
+        set(&mut study);
         study.create().unwrap();
         std::fs::write(study.pictures().join("picture.jpg"), b"a picture").unwrap();
         let (told, started) = mpsc::channel();
@@ -220,6 +230,31 @@ fn every_answer_has_its_headers() {
         assert!(header("location") == "/" || header("location").is_empty(), "{answer:?}");
         assert!(header("strict-transport-security").is_empty(), "there is no TLS here");
     }
+}
+
+#[test]
+fn marks_are_shown_with_their_alternatives_and_escaped() {
+    let mark = |span, words: &[Option<&str>]| Mark {
+        span,
+        grade: Grade::Likely,
+        alternatives: words.iter().map(|words| words.map(str::to_owned)).collect(),
+    };
+    let marks = vec![
+        mark([0, 2], &[Some("Come <i>back</i>"), None]),
+        // A file may hold anything: these are not in the text, or overlap the first.
+        mark([1, 4], &[]),
+        mark([7, 900], &[]),
+        mark([21, 25], &[]),
+    ];
+    let site = Site::with(Mode::Follow, |study| {
+        study.plan.conditions[0].shows_doubts = true;
+        study.items.iter_mut().for_each(|item| item.texts[0].marks.clone_from(&marks));
+    });
+    let page = site.participant().get("/");
+    assert!(page.is_page("follow"), "{page:?}");
+    assert!(page.body.contains("<mark class=\"likely\">Go</mark>"), "{}", page.body);
+    assert!(page.body.contains("<b>Come &lt;i&gt;back&lt;&#x2f;i&gt;</b> or <i>leave it out</i>"), "{}", page.body);
+    assert!(page.body.contains(" to the &lt;b&gt;door"), "{}", page.body);
 }
 
 #[test]

@@ -70,7 +70,7 @@ pub(super) fn measure(flags: Flags, output: &Output) -> Result<(), Error> {
     let pairs = pairs(&file, &key)?;
     let (seed, show, is_json) = (flags.judging.seed, flags.judging.check.show, flags.judging.json);
     let texts = Texts::of(&pairs);
-    let Judged { findings, report } = judged(&texts.all, flags.judging.check, output)?;
+    let Judged { findings, report, .. } = judged(&texts.all, flags.judging.check, output)?;
     let outcome = |(at, pair): (usize, _)| Outcome { pair, now: &findings[at], was: &findings[texts.old[at]] };
     let outcomes: Vec<Outcome<'_>> = pairs.iter().enumerate().map(outcome).collect();
     for line in outcomes.iter().filter(|outcome| !outcome.is_found()).map(missed).take(if is_json { 0 } else { show }) {

@@ -9,7 +9,7 @@ use wayword::{
     error::Error,
     output::Output,
 };
-use wayword_core::Finding;
+use wayword_core::{Doubt, Finding};
 use wayword_formats::{Episode, FormatError, r2r, reverie};
 
 /// The flags of a measurement that runs `wayword check`: all that `check` has, so that a new one needs no change here.
@@ -29,6 +29,8 @@ pub(crate) struct Judging {
 pub(crate) struct Judged {
     /// For each text, in the order given, what did not pass.
     pub(crate) findings: Vec<Vec<Finding>>,
+    /// For each text, the words that a reader should doubt, where that was asked for.
+    pub(crate) doubts: Vec<Vec<Doubt>>,
     /// The rest of the report of `check`.
     pub(crate) report: Map<String, Value>,
 }
@@ -63,24 +65,29 @@ pub(crate) fn item(number: usize, of: &Episode, text: &str) -> Episode {
 }
 
 fn sorted(report: &CheckReport, texts: usize) -> Result<Judged, Error> {
-    let mut findings = vec![Vec::new(); texts];
+    let (mut findings, mut doubts) = (vec![Vec::new(); texts], vec![Vec::new(); texts]);
     for text in &report.not_passed {
-        // REVERIE's names end in the object.
-        let number = text.path.split('_').next().and_then(|number| number.parse::<usize>().ok());
-        let known = number.and_then(|number| findings.get_mut(number));
-        let unknown =
-            || Error::usage(format!("check named an item {} that there is not", text.path), "report this as a bug");
-        known.ok_or_else(unknown)?.extend(text.findings.iter().cloned());
+        findings[number(&text.path, texts)?].extend(text.findings.iter().cloned());
+    }
+    for text in &report.doubted {
+        doubts[number(&text.path, texts)?].extend(text.doubts.iter().cloned());
     }
     let mut rest = match serde_json::to_value(report) {
         Ok(Value::Object(rest)) => rest,
         _ => Map::new(),
     };
     // They name the texts by the numbers that they have here.
-    for list in ["not_passed", "ambiguous_texts"] {
+    for list in ["not_passed", "ambiguous_texts", "doubted"] {
         rest.shift_remove(list);
     }
-    Ok(Judged { findings, report: rest })
+    Ok(Judged { findings, doubts, report: rest })
+}
+
+/// The number of a text, by the name that its item has here. REVERIE's names end in the object.
+fn number(path: &str, texts: usize) -> Result<usize, Error> {
+    let number = path.split('_').next().and_then(|number| number.parse::<usize>().ok());
+    let unknown = || Error::usage(format!("check named an item {path} that there is not"), "report this as a bug");
+    number.filter(|number| *number < texts).ok_or_else(unknown)
 }
 
 /// What `check` says about its run in words (the evidence, and whatever else it names), a line each.

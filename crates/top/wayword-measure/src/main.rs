@@ -9,6 +9,7 @@ mod corruptions;
 mod coverage;
 mod critics;
 mod detector;
+mod doubts;
 mod eye;
 mod fit_evidence;
 mod fit_follower;
@@ -202,6 +203,8 @@ enum What {
     Found(found::Flags),
     /// Measure how far the follower can be believed: its calibration, wrong turns, other paths' texts, ambiguity.
     ReaderFigures(reader_figures::Flags),
+    /// Count the words of people's texts that a change would fit better, by what is changed: the doubts that readers see.
+    Doubts(doubts::Flags),
     /// Try out the settings of agents on a train split.
     Sweep(sweep::Flags),
     /// Tell generated texts from people's with a plain classifier, cross-validated by building.
@@ -263,6 +266,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
         What::Found(flags) => found::measure(flags, output),
         What::ReaderFigures(flags) => reader_figures::measure(&flags, output),
+        What::Doubts(flags) => doubts::measure(&flags, output),
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::TellApart(flags) => tell_apart::measure(&flags, output),
         What::Houses(flags) => texts::houses::measure(&flags, output),

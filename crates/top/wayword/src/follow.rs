@@ -168,7 +168,7 @@ impl<'a> Followed<'a> {
         matches!(self.place, Surrounded::By(_)).then(Prior::default)
     }
 
-    fn known(&self) -> Known<'_> {
+    pub(crate) fn known(&self) -> Known<'_> {
         let building = match &self.place {
             Surrounded::By(scene) => &scene.followed,
             Surrounded::Nothing(building) => building,
@@ -196,12 +196,17 @@ impl<'a> Followed<'a> {
 
 /// What a text tells a walker; an error, with the reason, where nobody could follow it.
 fn guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
+    followable(text, tag).map(|(guide, _)| guide)
+}
+
+/// What a text tells a walker, and the reading of it; an error, with the reason, where nobody could follow it.
+pub(crate) fn followable(text: &str, tag: Option<&str>) -> Result<(Guide, Reading), &'static str> {
     let reading = read(text, &BTreeSet::new());
     if !is_understood(&reading, tag) {
         return Err("the program does not understand it");
     }
     let guide = Guide::of(text, &reading);
-    if guide.is_empty() { Err("the text tells no step") } else { Ok(guide) }
+    if guide.is_empty() { Err("the text tells no step") } else { Ok((guide, reading)) }
 }
 
 /// Whether the reader understands anything of a text: a text in another language may hold words that look like English.

@@ -12,6 +12,7 @@ mod clip;
 pub mod commands;
 mod count;
 pub mod demands;
+pub mod doubts;
 #[cfg(feature = "local")]
 mod download_bar;
 pub mod encoder;

@@ -5,10 +5,11 @@
 mod common;
 
 use common::{Building, files};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DVec3, Frame, Heading, Motion, Path, Pose, ViewpointId};
 use wayword_formats::{Format, jsonl, jsonl::Split};
+use wayword_testkit::{SCAN, viewpoint_id};
 
 fn export(building: &Building, format: &str, out: &str) -> Value {
     let ran =
@@ -258,4 +259,97 @@ fn two_runs_are_one_file_only_as_records() {
     let ran = building.wayword(&[&both[..], &["--format", "r2r"]].concat());
     assert!(ran.refused().contains("--format wayword"), "{ran:?}");
     assert_eq!(building.wayword(&[&both[..], &["--format", "wayword"]].concat()).code, Some(0));
+}
+
+/// From the refrigerator through the kitchen and the hallway to the entryway, and right into the living room.
+const TO_THE_LAMP: [usize; 5] = [5, 4, 1, 0, 2];
+
+/// A dataset of one path with these texts.
+fn texts(building: &Building, texts: &[&str]) -> &'static str {
+    let path: Vec<String> = TO_THE_LAMP.iter().map(|index| viewpoint_id(*index)).collect();
+    let item =
+        json!({ "path_id": 1, "scan": SCAN, "path": path, "heading": 3.3, "distance": 12.0, "instructions": texts });
+    building.write("texts.json", json!([item]).to_string());
+    "texts.json"
+}
+
+/// `wayword export --texts FILE --highlight doubts`, and the file that it wrote.
+fn highlighted(building: &Building, told: &[&str]) -> (Value, Value) {
+    let file = texts(building, told);
+    let asked = ["--texts", file, "--platform", "matterport", "--data", "data", "--highlight", "doubts", "--json"];
+    let ran = building.wayword(&[&["export"], &asked[..]].concat());
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let written = std::fs::read_to_string(building.path("doubts.json")).unwrap();
+    (ran.json(), serde_json::from_str(&written).unwrap())
+}
+
+/// The doubted words of a text in the file, each with its grade and what may stand there; "-" where they may be left out.
+fn doubted(file: &Value, at: usize) -> Vec<(String, String, Vec<String>)> {
+    let text = &file["texts"][at];
+    let words = text["text"].as_str().unwrap();
+    let told = |doubt: &Value| {
+        let span = doubt["span"].as_array().unwrap();
+        let place = |end: usize| usize::try_from(span[end].as_u64().unwrap()).unwrap();
+        let alternatives = doubt["alternatives"].as_array().unwrap().iter();
+        let alternatives = alternatives.map(|one| one["words"].as_str().unwrap_or("-").to_owned());
+        (words[place(0)..place(1)].to_owned(), doubt["grade"].as_str().unwrap().to_owned(), alternatives.collect())
+    };
+    text["doubts"].as_array().unwrap().iter().map(told).collect()
+}
+
+#[test]
+fn words_to_doubt_are_marked_with_what_may_stand_there_instead() {
+    let building = Building::new();
+    let right = "Leave the kitchen and walk to the entryway. Turn right at the coat rack and go into the living room. Stop at the lamp.";
+    let wrong = right.replace("Turn right", "Make a Left");
+    let (counts, file) = highlighted(&building, &[right, &wrong, "Gehe nach links <b>& warte</b>."]);
+    assert_eq!((&counts["texts"], &counts["unfollowed"]), (&3.into(), &1.into()), "{counts}");
+    assert_eq!((&file["format"], &file["version"]), (&"wayword-doubts".into(), &1.into()));
+    assert!(doubted(&file, 0).iter().all(|(_, grade, _)| grade != "likely"), "{file:#}");
+    let turn = doubted(&file, 1).into_iter().find(|(words, ..)| words == "Make a Left").unwrap();
+    assert!(turn.1 == "likely" && turn.2.contains(&"Make a Right".to_owned()), "{turn:?}");
+    let page = std::fs::read_to_string(building.path("doubts.html")).unwrap();
+    assert!(page.contains(">Make a Left</mark>") && page.contains("<bdi>Make a Right</bdi>"), "{page}");
+    assert!(page.contains("links &lt;b&gt;&amp; warte&lt;") && page.contains("Not followed: "), "{page}");
+    assert!(!page.contains("<script") && !page.contains("://"), "the page loads nothing");
+}
+
+#[test]
+fn texts_of_a_run_are_highlighted_by_the_run_alone() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let highlight = |more: &[&str]| {
+        building
+            .wayword(&[&["export", "--run", "run", "--style", "r2r", "--highlight", "doubts", "--json"], more].concat())
+    };
+    let closed = highlight(&[]).json();
+    assert!(closed["texts"].as_u64().unwrap() > 0, "{closed}");
+    assert_eq!((&closed["likely"], &closed["unfollowed"]), (&0.into(), &0.into()), "its own texts pass: {closed}");
+    let open = highlight(&["--world", "open"]).json();
+    assert_eq!(open["texts"], closed["texts"]);
+    let file: Value = serde_json::from_slice(&std::fs::read(building.path("doubts.json")).unwrap()).unwrap();
+    assert!(file["texts"].as_array().unwrap().iter().all(|text| text["style"] == "r2r" && text["world"] == "open"));
+}
+
+#[test]
+fn flags_that_do_not_fit_together_are_refused() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let file = texts(&building, &["Stop."]);
+    for (args, problem) in [
+        (&["--run", "run", "--highlight", "d", "--format", "r2r"][..], "writes no dataset"),
+        (&["--run", "run", "--highlight", "d", "--out", "o"], "writes no dataset"),
+        (&["--run", "run", "--texts", file, "--highlight", "d"], "of one run, or of one file"),
+        (&["--highlight", "d"], "of one run, or of one file"),
+        (&["--run", "run", "--highlight", "d", "--platform", "matterport"], "a run knows its platform"),
+        (&["--run", "run", "--highlight", "d", "--style", "none"], "no text of style none"),
+        (&["--run", "run", "--style", "r2r", "--out", "o"], "--format is missing"),
+        (&["--run", "run", "--style", "r2r", "--format", "r2r"], "--out is missing"),
+        (&["--format", "r2r", "--out", "o"], "--run is missing"),
+        (&["--texts", file, "--format", "r2r", "--out", "o"], "for --highlight"),
+    ] {
+        let refused = building.wayword(&[&["export"], args].concat());
+        assert!(refused.refused().contains(problem), "{args:?}: {refused:?}");
+    }
+    assert!(!building.path("d.html").exists());
 }

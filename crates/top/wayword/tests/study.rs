@@ -310,6 +310,59 @@ fn pictures_of_others_need_the_right_and_a_recording_is_not_walked() {
     assert!(!building.path("study/plan.json").exists());
 }
 
+#[test]
+fn the_same_texts_with_marks_and_without_are_two_conditions() {
+    let folder = houses();
+    let folder = folder.path();
+    // A wrong turn in every text, so that there is something to mark.
+    let records = fs_text(&folder.join("run/instructions.jsonl"));
+    let wrong = records.replace("right", "\u{0}").replace("left", "right").replace('\u{0}', "left");
+    std::fs::write(folder.join("wrong.jsonl"), wrong).unwrap();
+    let sets = ["--run", "plain=wrong.jsonl", "--run", "marked=wrong.jsonl", "--doubts", "marked", "--per-item", "1"];
+    let make = [&["study", "new", "--mode", "follow", "--items", "2", "--out", "study", "--json"], &sets[..]].concat();
+    wayword(folder, &make);
+    let study = folder.join("study");
+    let items = fs_text(&study.join("items.jsonl"));
+    let items: Vec<Value> = items.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let told: Vec<&Value> =
+        items.iter().filter(|item| item["is_practice"] != true).map(|item| &item["texts"][0]).collect();
+    let of = |condition: &str| -> Vec<&Value> {
+        told.iter().copied().filter(|told| told["condition"] == condition).collect()
+    };
+    assert!(of("plain").iter().all(|told| told.get("marks").is_none()), "{told:?}");
+    assert!(of("marked").iter().any(|told| told.get("marks").is_some()), "{told:?}");
+    let texts = |condition: &str| of(condition).iter().map(|told| told["text"].clone()).collect::<Vec<_>>();
+    assert_eq!(texts("plain"), texts("marked"));
+    let site = Site::of(&study, "2");
+    let mut pages = String::new();
+    for link in &site.links {
+        let mut person = Browser::at(&site);
+        person.get(link);
+        while person.go_on(0) {
+            pages.push_str(&person.page);
+        }
+    }
+    assert!(pages.contains("<mark class=") && pages.contains("Marked words may be wrong"), "no marks");
+    assert!(pages.contains("Some words may be marked"), "nobody is told of marks");
+    drop(site);
+    wayword(folder, &["study", "results", "study", "--out", "tables"]);
+    assert!(fs_text(&folder.join("tables/items.csv")).lines().next().unwrap().contains("marks"));
+    assert!(fs_text(&folder.join("tables/index.html")).contains("(doubts marked)"));
+}
+
+#[test]
+fn marks_are_refused_where_nobody_walks_or_there_is_no_such_set() {
+    let folder = houses();
+    let new = |args: &[&str]| {
+        run(command(&[&["study", "new", "--run", "a=run#r2r", "--out", "study"], args].concat())
+            .current_dir(folder.path()))
+    };
+    let refused = new(&["--mode", "follow", "--doubts", "b"]);
+    assert!(refused.refused().contains("there are: a"), "{refused:?}");
+    let refused = new(&["--mode", "rate", "--doubts", "a"]);
+    assert!(refused.refused().contains("only for people who walk"), "{refused:?}");
+}
+
 fn fs_text(file: &Path) -> String {
     String::from_utf8_lossy(&std::fs::read(file).unwrap()).into_owned()
 }

@@ -101,6 +101,17 @@ impl Told {
         self.kind = Kind::of(&self.step);
     }
 
+    /// Changes how it has to do with one of its places.
+    pub(crate) fn change_relation(&mut self, place: usize, relation: Relation) {
+        if let Some(mention) = self.mentions.get_mut(place) {
+            mention.relation = relation;
+        }
+        if let Some(told) = self.step.places.get_mut(place) {
+            told.relation = relation;
+        }
+        self.kind = Kind::of(&self.step);
+    }
+
     /// Changes the sides on which its places are.
     pub(crate) fn change_sides(&mut self, change: impl Fn(Side) -> Side) {
         self.step.side = self.step.side.map(|(relation, side)| (relation, change(side)));
@@ -168,6 +179,34 @@ impl Guide {
     /// Whether it names a room.
     pub(crate) fn tells_room(&self, room: &str) -> bool {
         self.rooms.iter().any(|told| same_room(room, told))
+    }
+
+    /// The places that it names: step by step, the number of the step and the place in its list.
+    pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let of_step = |(step, told): (usize, &Told)| (0..told.mentions.len()).map(move |place| (step, place));
+        self.steps.iter().enumerate().flat_map(of_step)
+    }
+
+    /// The guide without what it tells within a byte range of its text; `None` where nothing is left, or all of it.
+    pub(crate) fn without(&self, [from, to]: [usize; 2]) -> Option<Self> {
+        let is_within = |span: [usize; 2]| from <= span[0] && span[1] <= to;
+        let mut left = self.clone();
+        let mut is_changed = false;
+        for told in &mut left.steps {
+            if told.step.turn_span.is_some_and(is_within) {
+                told.leave_out_turn();
+                told.step.turn_span = None;
+                is_changed = true;
+            }
+            let before = told.mentions.len();
+            told.mentions.retain(|mention| !mention.span.is_some_and(is_within));
+            is_changed |= told.mentions.len() < before;
+        }
+        let tells_all = |told: &Told| told.mentions.is_empty() && told.step.turn.is_none();
+        let overlaps = |told: &Told| told.step.span[0] < to && from < told.step.span[1];
+        left.steps.retain(|told| !(is_within(told.step.span) || (is_changed && overlaps(told) && tells_all(told))));
+        is_changed |= left.len() < self.len();
+        (is_changed && !left.is_empty()).then_some(left)
     }
 
     /// Number of its turns.

@@ -8,6 +8,7 @@
 
 mod building;
 pub mod change;
+pub mod doubt;
 mod features;
 mod fit;
 mod guide;

@@ -86,7 +86,7 @@ impl Unfollowed {
 }
 
 /// Most steps of a text that is followed. People's texts have 20 at most.
-const MOST_STEPS: usize = 60;
+pub(crate) const MOST_STEPS: usize = 60;
 
 /// An instruction against all walks from the same start.
 #[derive(Debug, Clone, PartialEq)]

@@ -43,7 +43,7 @@ fn label(name: &str, east: f64, north: f64, eye: DVec3) -> Label {
     }
 }
 
-fn surveyed() -> Survey {
+pub(crate) fn surveyed() -> Survey {
     let mut graph = ViewpointGraph::default();
     for (at, (_, east, north, _)) in PLACES.iter().enumerate() {
         graph.add(id(at), DVec3::new(*east, *north, 1.5), Some(1)).unwrap();

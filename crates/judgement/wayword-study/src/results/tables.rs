@@ -379,7 +379,7 @@ pub(super) fn conditions(results: &Results) -> Table {
             false,
             [
                 title(&condition.name, condition.kind),
-                name(&condition.source),
+                format!("{}{}", name(&condition.source), if condition.shows_doubts { " (doubts marked)" } else { "" }),
                 row.answers.to_string(),
                 row.persons.to_string(),
                 row.items.to_string(),

@@ -3,12 +3,12 @@
 use super::{forms::Fields, ways::ways};
 use crate::{
     store::{Book, Done, Entry, Held, MOST_MOVES, Outcome, Stage},
-    study::{Mode, Route, Scene, Status, Study, StudyError},
+    study::{Mode, Route, Scene, Status, Study, StudyError, Told},
     token::hash,
     wording::{AGREEMENT, QUESTIONS, STATEMENTS},
 };
 use minijinja::{Environment, Value, context};
-use wayword_core::{Heading, ViewpointId};
+use wayword_core::{Heading, ViewpointId, doubt::parts};
 
 const TEMPLATES: [(&str, &str); 13] = [
     ("base.html", include_str!("pages/base.html")),
@@ -205,7 +205,10 @@ impl Page {
                 ("pair", context! { film => film(), a, b })
             }
             Mode::Follow if held.stopped_ms.is_some() => ("follow_after", context! { text, statements => STATEMENTS }),
-            Mode::Follow => ("follow", context! { text, ..standing(held, route, scene?)? }),
+            Mode::Follow => {
+                let told = item.texts.first()?;
+                ("follow", context! { ..marked(told), ..standing(held, route, scene?)? })
+            }
         };
         let own = context! { slot => held.slot, is_practice => held.is_practice, ..own };
         let shown = if held.is_practice {
@@ -215,6 +218,22 @@ impl Page {
         };
         Some(Self::new(study, name, around, true, shown))
     }
+}
+
+/// A text in runs of words, those that are marked with their numbers and with what may stand there instead.
+fn marked(told: &Told) -> Value {
+    let mut number = 0;
+    let runs = parts(&told.text, &told.marks, |mark| mark.span).into_iter();
+    let run = |(words, mark): (&str, Option<&crate::study::Mark>)| {
+        number += usize::from(mark.is_some());
+        let mark = mark.map(|mark| {
+            let (grade, says) = (mark.grade.name(), mark.grade.told());
+            context! { number, grade, says, alternatives => mark.alternatives }
+        });
+        context! { words, mark }
+    };
+    let runs: Vec<Value> = runs.map(run).collect();
+    context! { runs, marks => number }
 }
 
 /// Where a walker stands and looks, and where the ways go.
@@ -249,13 +268,18 @@ fn progress(done: Done) -> Value {
 fn steps(study: &Study) -> Vec<&'static str> {
     let practice = "The first one is for practice. It does not count.";
     match study.plan.mode {
-        Mode::Follow => vec![
-            "You read a text. It tells the way through a building.",
-            "You see pictures of the building. Look around, and go from place to place.",
-            "Go where the text says. Stop where the text ends.",
-            "Then you say how it was.",
-            practice,
-        ],
+        Mode::Follow => {
+            let marks = "Some words may be marked: a program doubts them. They may be wrong, or right. Under the text you read what may stand there instead.";
+            let has_marks = study.plan.conditions.iter().any(|condition| condition.shows_doubts);
+            let first = ["You read a text. It tells the way through a building."];
+            let then = [
+                "You see pictures of the building. Look around, and go from place to place.",
+                "Go where the text says. Stop where the text ends.",
+                "Then you say how it was.",
+                practice,
+            ];
+            first.into_iter().chain(has_marks.then_some(marks)).chain(then).collect()
+        }
         Mode::Rate if study.settings.write_first => vec![
             "You watch a walk through a building.",
             "You write a text that would lead somebody along the walk.",

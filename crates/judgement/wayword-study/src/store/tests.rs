@@ -44,7 +44,7 @@ fn study(mode: Mode, routes: u32, per_item: u32, per_participant: u32) -> Desk {
         start_heading: Heading::NORTH,
         film: Vec::new(),
     };
-    let told = |name: &str| Told { condition: name.to_owned(), text: "Go on.".to_owned() };
+    let told = |name: &str| Told { condition: name.to_owned(), text: "Go on.".to_owned(), ..Told::default() };
     let mut items: Vec<Item> = (0..routes)
         .flat_map(|route| match mode {
             Mode::Pair => vec![(route, vec![told("x"), told("y")])],
@@ -55,7 +55,8 @@ fn study(mode: Mode, routes: u32, per_item: u32, per_participant: u32) -> Desk {
         .collect();
     let id = u32::try_from(items.len()).unwrap();
     items.push(Item { id, route: routes, is_practice: true, texts: vec![told("x")] });
-    let condition = |name: &str| Condition { name: name.to_owned(), kind: Kind::Run, source: String::new() };
+    let condition =
+        |name: &str| Condition { name: name.to_owned(), kind: Kind::Run, source: String::new(), shows_doubts: false };
     let plan = Plan {
         mode,
         seed: 0,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use wayword_core::{DVec3, Heading, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
+use wayword_core::{DVec3, Doubt, Grade, Heading, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
 
 /// What one person does at a time: a route with one text, or with two where texts are compared.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,13 +20,35 @@ pub struct Item {
 }
 
 /// A text and the condition that it stands for.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Told {
     /// Name of the condition.
     pub condition: String,
     /// The instruction.
     pub text: String,
+    /// The words that are marked for those who walk by it, in the order of the text.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub marks: Vec<Mark>,
+}
+
+/// Words that are marked because a reader should doubt them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mark {
+    /// Their byte range in the text.
+    pub span: [usize; 2],
+    /// How much they are doubted.
+    pub grade: Grade,
+    /// What may stand there instead, the best first; `None` where the words are better left out.
+    pub alternatives: Vec<Option<String>>,
+}
+
+impl From<Doubt> for Mark {
+    fn from(doubt: Doubt) -> Self {
+        let alternatives = doubt.alternatives.into_iter().map(|one| one.words).collect();
+        Self { span: doubt.span, grade: doubt.grade, alternatives }
+    }
 }
 
 /// A path that texts tell of.

@@ -10,6 +10,6 @@ mod settings;
 pub use data::{Answer, Choice, Data, Move, Participant, Passed, Slot, SlotState, Status};
 pub use error::StudyError;
 pub use folder::Study;
-pub use item::{Item, Picture, Place, Route, Scene, Told};
+pub use item::{Item, Mark, Picture, Place, Route, Scene, Told};
 pub use plan::{Condition, Kind, Mode, Plan};
 pub use settings::{Codes, Question, Recruiter, Settings};

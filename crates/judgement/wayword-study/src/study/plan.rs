@@ -48,6 +48,9 @@ pub struct Condition {
     pub kind: Kind,
     /// Where the texts come from, as the user gave it.
     pub source: String,
+    /// Whether people see which words to doubt.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub shows_doubts: bool,
 }
 
 /// What is fixed when a study is made, because answers under different plans cannot be put together.

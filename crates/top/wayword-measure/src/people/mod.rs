@@ -1,5 +1,6 @@
 //! What people said of spans of texts, against what `wayword check` finds in them.
 
+mod doubted;
 mod figures;
 mod kinds;
 
@@ -7,6 +8,7 @@ use crate::{
     judged::{Judged, Judging, is_about, judged, said_of},
     share::{cell, table},
 };
+use doubted::{Doubted, rows};
 use figures::{Figures, Held, Row, figures, is_fail};
 use serde_json::json;
 use std::path::Path;
@@ -17,19 +19,22 @@ use wayword_world::path_of;
 
 pub(super) fn measure(flags: Judging, output: &Output) -> Result<(), Error> {
     let (show, seed, is_json) = (flags.check.show, flags.seed, flags.json);
-    let (texts, Judged { findings, report }) = found(flags, output)?;
+    let (texts, Judged { findings, doubts, report }) = found(flags, output)?;
     let held: Vec<Held<'_>> = texts.iter().zip(&findings).map(|(text, findings)| Held { text, findings }).collect();
+    let doubted: Vec<Doubted<'_>> = texts.iter().zip(&doubts).map(|(text, doubts)| Doubted { text, doubts }).collect();
+    let doubted = rows(&doubted, seed);
     let figures = figures(&held, seed);
     for line in false_alarms(&held).into_iter().take(if is_json { 0 } else { show }) {
         output.say(line);
     }
-    let shown = shown(&figures, texts.len(), &said_of(&report));
-    output.data(&json!({ "texts": texts.len(), "figures": figures, "check": report }), shown);
+    let shown = format!("{}\n\n{}", shown(&figures, texts.len(), &said_of(&report)), doubted::shown(&doubted));
+    output.data(&json!({ "texts": texts.len(), "figures": figures, "doubts": doubted, "check": report }), shown);
     Ok(())
 }
 
 /// The texts of a file with what `check` found in each.
-fn found(flags: Judging, output: &Output) -> Result<(Vec<LabelledText>, Judged), Error> {
+fn found(mut flags: Judging, output: &Output) -> Result<(Vec<LabelledText>, Judged), Error> {
+    flags.check.doubts = flags.check.run.is_none();
     let texts = hear::read(&flags.check.file)?;
     let platform = platforms::open(&Asked::from(flags.check.platform.clone()).resolve()?)?;
     fit(&texts, &flags.check.file, platform.as_ref())?;

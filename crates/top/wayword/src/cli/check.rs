@@ -48,6 +48,9 @@ pub struct Check {
     /// Shares by the names of objects and rooms that `wayword calibrate` made.
     #[arg(long, value_name = "FILE")]
     pub calibration: Option<PathBuf>,
+    /// Say of each text which words a reader should doubt, with up to three alternatives: `doubted` of --json.
+    #[arg(long, conflicts_with = "run")]
+    pub doubts: bool,
     /// A detector that looks for what the texts name.
     #[command(flatten)]
     pub detecting: Detecting,

@@ -55,6 +55,7 @@ Examples:
   wayword study new --run ours=runs/houses#r2r --mode follow --out STUDY
   wayword study new --run a=runs/central#r2r --run b=runs/other#r2r --include people,other-path --episodes R2R_val_seen.json \\
       --platform matterport --data DATA --i-have-the-right --items 60 --per-item 5 --mode rate --out STUDY
+  wayword study new --run plain=runs/a#r2r --run marked=runs/a#r2r --doubts marked --mode follow --out STUDY
   wayword study new --run a=runs/a#r2r --run b=runs/b#r2r --mode pair --recruiter prolific --out STUDY")]
 pub struct StudyNew {
     /// A set of texts: NAME=RUN#STYLE or NAME=FILE. Give the flag several times to compare sets.
@@ -63,6 +64,10 @@ pub struct StudyNew {
     /// Controls: people (the texts of --episodes) and other-path (a text of another path in the same scene: what a wrong text reaches).
     #[arg(long, value_name = "CONTROLS", value_delimiter = ',')]
     pub include: Vec<Control>,
+    /// Mark the words to doubt in the texts of this set or control, with what may stand there instead, for those who walk by them.
+    /// May be given several times. The same run under two names, one of them marked, says what the marks are worth.
+    #[arg(long, value_name = "NAME")]
+    pub doubts: Vec<String>,
     /// Dataset file of the paths: R2R, REVERIE, RxR or Wayword. [default: the paths of the first run]
     #[arg(long, value_name = "FILE")]
     pub episodes: Option<PathBuf>,

@@ -29,7 +29,7 @@ use crate::{
     output::Output,
 };
 
-pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, How, check_file, checked};
+pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, DoubtedText, How, check_file, checked};
 pub use compare::compared;
 pub use generate::{Searched, Summary, generate_into};
 pub use perceive::{Extent, Measured, OfDetector, Row, measure_detector, perceive};

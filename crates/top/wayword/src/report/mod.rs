@@ -7,6 +7,7 @@
 mod book;
 pub mod comparison;
 pub(crate) mod data_uri;
+pub mod doubts;
 mod frames;
 pub(crate) mod map;
 mod model;
@@ -226,6 +227,9 @@ fn templates() -> Result<Environment<'static>, minijinja::Error> {
     templates.add_template("forest.html", include_str!("comparison/forest.html"))?;
     templates.add_template("robustness.css", include_str!("robustness/style.css"))?;
     templates.add_template("robustness.html", include_str!("robustness/page.html"))?;
+    templates.add_template("foot.html", include_str!("foot.html"))?;
+    templates.add_template("doubts.css", include_str!("doubts/style.css"))?;
+    templates.add_template("doubts.html", include_str!("doubts/page.html"))?;
     templates.add_template("replay.html", include_str!("replay/replay.html"))?;
     Ok(templates)
 }

@@ -22,6 +22,7 @@ pub(super) fn empty(mode: Mode, conditions: &[(&str, Kind)]) -> Data {
         name: (*name).to_owned(),
         kind: *kind,
         source: format!("runs/{name}#r2r"),
+        shows_doubts: false,
     };
     Data {
         plan: Plan {
@@ -76,7 +77,7 @@ pub(super) fn add_item(data: &mut Data, route: u32, conditions: &[usize]) -> u32
     let id = data.items.len() as u32;
     let told = |at: &usize| {
         let condition = data.plan.conditions[*at].name.clone();
-        Told { text: format!("Walk past the sofa by {condition}, and stop."), condition }
+        Told { text: format!("Walk past the sofa by {condition}, and stop."), condition, marks: Vec::new() }
     };
     let texts = conditions.iter().map(told).collect();
     data.items.push(Item { id, route, is_practice: false, texts });

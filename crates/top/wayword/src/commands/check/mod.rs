@@ -10,6 +10,7 @@ mod worlds;
 use crate::{
     calibration,
     cli::{AskedWorld, Check as Args},
+    doubts::doubts,
     error::{Error, Exit},
     follow::{Followed, KnownScenes, Told, rejection},
     looking_for::Lookout,
@@ -21,13 +22,15 @@ use crate::{
 use held::Held;
 use rayon::prelude::*;
 use report::Shown;
-use std::path::Path as FilePath;
+use std::{collections::BTreeMap, path::Path as FilePath};
 use walks::{Text, Walk, walks};
 use wayword_checks::{Evidence, Reach, Subject, Surroundings, Testimony, Turns, World, check, lift, open::Calibration};
+#[cfg(feature = "study")]
+use wayword_core::{Doubt, Path};
 use wayword_core::{Finding, Platform};
 use worlds::world_of;
 
-pub use report::{AmbiguousText, CheckReport, CheckedText, Counts};
+pub use report::{AmbiguousText, CheckReport, CheckedText, Counts, DoubtedText};
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = checked(args, output)?;
@@ -47,6 +50,8 @@ pub fn checked(args: &Args, output: &Output) -> Result<CheckReport, Error> {
         without_route: args.no_route,
         reject_ambiguous: args.reject_ambiguous,
         calibration: args.calibration.as_deref(),
+        doubts: args.doubts,
+        captions: None,
     };
     if let Some(run) = &args.run {
         return of_run::check_file(&args.file, run, how);
@@ -72,6 +77,10 @@ pub struct How<'a> {
     pub reject_ambiguous: bool,
     /// A file of what the user's own data says of single names.
     pub calibration: Option<&'a FilePath>,
+    /// Whether it is said which words a reader should doubt.
+    pub doubts: bool,
+    /// A run whose captions are the evidence where the platform has no labels.
+    pub captions: Option<&'a FilePath>,
 }
 
 /// Checks every instruction of a file.
@@ -101,36 +110,35 @@ fn check_by(
         lookout,
         sources,
         calibration: calibration.as_ref(),
+        captions: how.captions.map(of_run::captions).transpose()?.unwrap_or_default(),
         scenes: KnownScenes::new(),
     };
-    let bar = output.progress(walks.len(), "paths");
-    let checked: Vec<_> = walks
-        .par_iter()
-        .map(|walk| {
-            let checked = checking.check(walk);
-            bar.inc(1);
-            checked
-        })
-        .collect::<Result<_, _>>()?;
-    bar.finish_and_clear();
-    let calibration = how.calibration.map(|file| file.display().to_string());
-    let mut report = CheckReport { calibration, ..CheckReport::default() };
-    let mut texts = Vec::new();
-    for (source, of_walk) in checked {
-        if !report.checked_against.iter().any(|other| other == source) {
-            report.checked_against.push(source.to_owned());
-        }
-        texts.extend(of_walk);
-    }
-    for text in walks.iter().flat_map(|walk| &walk.texts) {
-        held.count(text, &mut report);
-    }
-    // Back into the order of the file: the texts of one path were checked together.
-    texts.sort_by_key(|(at, _, _)| *at);
-    for (_, text, findings) in texts {
-        report.add(text, &findings);
-    }
-    Ok(report)
+    checking.report(&walks, output)
+}
+
+/// The words to doubt of texts about paths, in their order, as if somebody else than this program had written them.
+///
+/// # Errors
+/// When the platform cannot say what is along a path.
+#[cfg(feature = "study")]
+pub(super) fn doubts_of(
+    texts: Vec<(Path, String)>,
+    platform: &dyn Platform,
+    output: &Output,
+) -> Result<Vec<Vec<Doubt>>, Error> {
+    let how = How { doubts: true, ..How::default() };
+    let checking = Checking {
+        platform,
+        held: &Held::to(None)?,
+        how,
+        lookout: None,
+        sources: Sources::default(),
+        calibration: None,
+        captions: BTreeMap::new(),
+        scenes: KnownScenes::new(),
+    };
+    let report = checking.report(&walks::gathered(texts), output)?;
+    Ok(report.doubted.into_iter().map(|text| text.doubts).collect())
 }
 
 /// What the texts of a path were checked against, and each text with its place in the file and everything that was found.
@@ -146,10 +154,44 @@ struct Checking<'a> {
     /// Whether labels count, and the detector.
     sources: Sources,
     calibration: Option<&'a Calibration>,
+    /// What a run saw, by the names of its paths.
+    captions: BTreeMap<String, Evidence>,
     scenes: KnownScenes,
 }
 
 impl Checking<'_> {
+    /// What is found in the texts of walks, in their order.
+    fn report(&self, walks: &[Walk], output: &Output) -> Result<CheckReport, Error> {
+        let bar = output.progress(walks.len(), "paths");
+        let checked: Vec<_> = walks
+            .par_iter()
+            .map(|walk| {
+                let checked = self.check(walk);
+                bar.inc(1);
+                checked
+            })
+            .collect::<Result<_, _>>()?;
+        bar.finish_and_clear();
+        let calibration = self.how.calibration.map(|file| file.display().to_string());
+        let mut report = CheckReport { calibration, ..CheckReport::default() };
+        let mut texts = Vec::new();
+        for (source, of_walk) in checked {
+            if !report.checked_against.iter().any(|other| other == source) {
+                report.checked_against.push(source.to_owned());
+            }
+            texts.extend(of_walk);
+        }
+        for text in walks.iter().flat_map(|walk| &walk.texts) {
+            self.held.count(text, &mut report);
+        }
+        // Back into the order of the file: the texts of one path were checked together.
+        texts.sort_by_key(|(at, _, _)| *at);
+        for (_, text, findings) in texts {
+            report.add(text, &findings);
+        }
+        Ok(report)
+    }
+
     fn check(&self, walk: &Walk) -> Result<CheckedWalk, Error> {
         let Self { platform, how, lookout, sources, .. } = *self;
         let world = Remembering::new(platform);
@@ -159,7 +201,9 @@ impl Checking<'_> {
             Some(lookout) => detecting::evidence(lookout, &world, walk)?,
             None => None,
         };
-        let mut evidence = labels.or(detected).unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
+        let captions = || self.captions.get(&walk.path.id).cloned();
+        let known = labels.or(detected).or_else(captions);
+        let mut evidence = known.unwrap_or_else(|| Evidence::of_path_alone(&walk.path));
         let source = evidence.source;
         let world_of = |text: &Text| world_of(text, how.world, platform.name(), source);
         let some_are_open = walk.texts.iter().any(|text| world_of(text) == World::Open);
@@ -196,6 +240,10 @@ impl Checking<'_> {
             let ambiguity = told.as_ref().map(|told| told.ambiguity(&text.words, &evidence));
             checked.add(ambiguity.as_ref().filter(|_| how.reject_ambiguous).and_then(rejection));
             let mut shown = CheckedText::of(text, &checked);
+            if how.doubts {
+                let words = (text.words.as_str(), text.tag.as_deref());
+                shown.doubted = Some(doubts(followed.as_ref(), words, &checked, ambiguity.as_ref()));
+            }
             shown.ambiguity = ambiguity;
             if let Some(told) = told {
                 (shown.route, shown.turn_gain) = (told.route, told.turn_gain);

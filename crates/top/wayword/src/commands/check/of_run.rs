@@ -12,7 +12,7 @@ use crate::{
     run::{WalkRecord, file, lines, settings_of},
 };
 use serde::Deserialize;
-use std::path::Path as FilePath;
+use std::{collections::BTreeMap, path::Path as FilePath};
 use wayword_checks::{Evidence, Reach, Subject, Turns, check_own};
 use wayword_core::{Finding, ObjectId, Path, SceneId, ViewpointId};
 use wayword_formats::{Format, jsonl};
@@ -87,6 +87,21 @@ pub(super) fn check_file(texts: &FilePath, run: &FilePath, how: How<'_>) -> Resu
     found.sort_by_key(|(at, _, _)| *at);
     found.into_iter().for_each(|(_, text, findings)| report.add(text, &findings));
     Ok(report)
+}
+
+/// What a run saw along its paths, by their names.
+///
+/// # Errors
+/// When the run cannot be read.
+pub(super) fn captions(run: &FilePath) -> Result<BTreeMap<String, Evidence>, Error> {
+    let mut captions = BTreeMap::new();
+    lines::each(&run.join(file::WALKS), |line| {
+        let record: WalkRecord = line.parse()?;
+        let walk = Walk::new(record.path, record.observations);
+        captions.extend(walk.evidence().map(|evidence| (walk.path.id.clone(), evidence)));
+        Ok(())
+    })?;
+    Ok(captions)
 }
 
 impl Wants {

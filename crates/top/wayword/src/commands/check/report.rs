@@ -1,11 +1,11 @@
 //! What `wayword check` says of a file.
 
 use super::walks::Text;
-use crate::{count::count, follow::Shares};
+use crate::{count::count, doubts::Doubted, follow::Shares};
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt};
 use wayword_checks::Checked;
-use wayword_core::{Ambiguity, Check, Finding, Verdict};
+use wayword_core::{Ambiguity, Check, Doubt, Finding, Grade, Verdict};
 
 /// What was found in a file.
 #[derive(Debug, Default, Serialize)]
@@ -37,6 +37,9 @@ pub struct CheckReport {
     pub ambiguous_texts: Vec<AmbiguousText>,
     /// Every text that did not pass, with its findings.
     pub not_passed: Vec<CheckedText>,
+    /// Where it was asked for: every text with the words that a reader should doubt, in the order of the file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub doubted: Vec<DoubtedText>,
 }
 
 /// Texts by verdict.
@@ -83,6 +86,46 @@ pub struct CheckedText {
     /// What the text may mean. It makes a text fail only where `--reject-ambiguous` asks for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambiguity: Option<Ambiguity>,
+    /// The words that a reader should doubt, where that was asked for. A report lists them in [`CheckReport::doubted`].
+    #[serde(skip)]
+    pub doubted: Option<Doubted>,
+    /// The style that it was written in, where the file says so.
+    #[serde(skip)]
+    pub style: Option<String>,
+}
+
+/// A text with the words that a reader should doubt.
+#[derive(Debug, Clone, Serialize)]
+pub struct DoubtedText {
+    /// Its path.
+    pub path: String,
+    /// The style that it was written in, where the file says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<String>,
+    /// Its words.
+    pub text: String,
+    /// All checks together.
+    pub verdict: Verdict,
+    /// The world that it was held against: open or closed.
+    pub world: &'static str,
+    /// Why it could not be followed, where it could not: then no other wording is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unfollowed: Option<&'static str>,
+    /// The doubts, in the order of the text and apart from each other.
+    pub doubts: Vec<Doubt>,
+}
+
+impl DoubtedText {
+    fn of(text: &CheckedText, Doubted { doubts, unfollowed }: Doubted) -> Self {
+        let (path, style, words) = (text.path.clone(), text.style.clone(), text.text.clone());
+        Self { path, style, text: words, verdict: text.verdict, world: text.world, unfollowed, doubts }
+    }
+
+    /// Whether some of its words are doubted so much.
+    #[must_use]
+    pub fn has(&self, grade: Grade) -> bool {
+        self.doubts.iter().any(|doubt| doubt.grade == grade)
+    }
 }
 
 impl CheckedText {
@@ -90,12 +133,17 @@ impl CheckedText {
         let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
         let (path, words) = (text.path.clone(), text.words.clone());
         let (verdict, world) = (checked.verdict(), checked.world.name());
-        Self { path, text: words, verdict, world, findings, route: None, turn_gain: None, ambiguity: None }
+        let style = text.style.as_ref().map(|style| style.name.clone());
+        let (route, turn_gain, ambiguity, doubted) = (None, None, None, None);
+        Self { path, text: words, verdict, world, findings, route, turn_gain, ambiguity, doubted, style }
     }
 }
 
 impl CheckReport {
-    pub(super) fn add(&mut self, text: CheckedText, findings: &[Finding]) {
+    pub(super) fn add(&mut self, mut text: CheckedText, findings: &[Finding]) {
+        if let Some(doubted) = text.doubted.take() {
+            self.doubted.push(DoubtedText::of(&text, doubted));
+        }
         for check in Check::ALL {
             let of_check: Vec<Finding> = findings.iter().filter(|finding| finding.check == check).cloned().collect();
             if !of_check.is_empty() {
@@ -129,6 +177,10 @@ impl Counts {
     }
 }
 
+fn texts_with(texts: usize) -> String {
+    format!("{} with words that are", count(texts, "text"))
+}
+
 /// The report as people read it.
 pub(super) struct Shown<'a> {
     pub(super) report: &'a CheckReport,
@@ -157,6 +209,11 @@ impl fmt::Display for Shown<'_> {
         write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
         if report.ambiguous > 0 {
             write!(f, "\nambiguous: {} may mean several places or objects", count(report.ambiguous, "text"))?;
+        }
+        if !report.doubted.is_empty() {
+            let with = |grade| report.doubted.iter().filter(|text| text.has(grade)).count();
+            let [likely, uncertain] = Grade::ALL.map(with);
+            write!(f, "\ndoubts: {} likely wrong, {} not sure", texts_with(likely), texts_with(uncertain))?;
         }
         if let Some(file) = &report.calibration {
             write!(f, "\ncalibration: {file}")?;

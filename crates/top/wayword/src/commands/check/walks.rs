@@ -79,6 +79,17 @@ pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk
     Ok(walks.all)
 }
 
+/// Texts about paths, gathered by their paths.
+#[cfg(feature = "study")]
+pub(super) fn gathered(texts: Vec<(Path, String)>) -> Vec<Walk> {
+    let mut walks = Walks::default();
+    for (path, words) in texts {
+        let text = Text::of_dataset(&path, words, None);
+        walks.add(path, text);
+    }
+    walks.all
+}
+
 /// Paths, gathered from texts.
 #[derive(Default)]
 struct Walks {

@@ -1,13 +1,15 @@
 //! `wayword export`.
 
+mod highlight;
 mod in_habitat;
 
 use crate::{
-    cli::Export,
+    cli::{AskedWorld, Export},
     count::count,
     error::{Error, Exit},
     output::Output,
     run::file,
+    settings::AskedPlatform,
 };
 use in_habitat::World;
 use serde::Serialize;
@@ -44,11 +46,34 @@ struct Written {
 }
 
 pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
-    let format: Format =
-        args.format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
+    match &args.highlight {
+        Some(name) => highlight::write(args, name, output),
+        None => dataset(args, output),
+    }
+}
+
+/// What an export to a dataset needs: the format, and the file.
+fn asked(args: &Export) -> Result<(Format, &Path), Error> {
+    if args.texts.is_some() || args.platform != AskedPlatform::default() || args.world != AskedWorld::default() {
+        let problem = "--texts, --world and the flags of a platform are for --highlight";
+        return Err(Error::usage(problem, "leave them out, or give --highlight NAME"));
+    }
+    let lacks = |what: &str| {
+        Error::usage(format!("{what} is missing"), "give --run, --format and --out for a dataset, or --highlight NAME")
+    };
+    if args.run.is_empty() {
+        return Err(lacks("--run"));
+    }
+    let format = args.format.as_ref().ok_or_else(|| lacks("--format"))?;
+    let format = format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
+    Ok((format, args.out.as_deref().ok_or_else(|| lacks("--out"))?))
+}
+
+fn dataset(args: &Export, output: &Output) -> Result<Exit, Error> {
+    let (format, out) = asked(args)?;
     let mut records = records(&args.run, args.style.as_deref())?;
-    if args.out.exists() {
-        output.say(format_args!("overwriting the old file {}", args.out.display()));
+    if out.exists() {
+        output.say(format_args!("overwriting the old file {}", out.display()));
     }
     let mut scene_needs = BTreeSet::new();
     let provenance = if format == Format::Wayword {
@@ -58,14 +83,14 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
             }
             split(&mut records, share, args.seed);
         }
-        jsonl::write(&args.out, &records)?;
+        jsonl::write(out, &records)?;
         None
     } else {
-        refuse_what_only_records_bear(args)?;
+        refuse_what_only_records_bear(args, format)?;
         refuse_without_poses(format, &records)?;
         let episodes = episodes(format, &args.run, &records, output);
         scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
-        write_as(format, &args.out, &records, episodes)?
+        write_as(format, out, &records, episodes)?
     };
     if !scene_needs.is_empty() {
         output.say(format_args!(
@@ -76,12 +101,12 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
             output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
         }
     }
-    let written = Written { instructions: records.len(), file: args.out.clone(), provenance, scene_needs };
+    let written = Written { instructions: records.len(), file: out.to_owned(), provenance, scene_needs };
     let beside =
         written.provenance.as_ref().map_or(String::new(), |file| format!("; provenance in {}", file.display()));
     output.data(
         &written,
-        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), args.out.display()),
+        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), out.display()),
     );
     Ok(Exit::Done)
 }
@@ -105,20 +130,20 @@ fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> 
     Ok(records)
 }
 
-fn refuse_what_only_records_bear(args: &Export) -> Result<(), Error> {
+fn refuse_what_only_records_bear(args: &Export, format: Format) -> Result<(), Error> {
     if args.run.len() > 1 {
-        let problem = format!("format {} takes one run only", args.format);
+        let problem = format!("format {format} takes one run only");
         return Err(Error::usage(problem, "merge runs with --format wayword"));
     }
     if args.val_share.is_some() {
         return Err(Error::usage(
-            format!("format {} has no splits within a file", args.format),
+            format!("format {format} has no splits within a file"),
             "use --val-share with --format wayword",
         ));
     }
     if args.style.is_none() {
         return Err(Error::usage(
-            format!("a file of format {} has texts of one style only", args.format),
+            format!("a file of format {format} has texts of one style only"),
             "choose it with --style",
         ));
     }

@@ -1,5 +1,6 @@
 //! `wayword study`.
 
+mod marks;
 mod new;
 mod pictures;
 mod serve;

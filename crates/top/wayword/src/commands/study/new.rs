@@ -1,7 +1,7 @@
 //! `wayword study new`.
 
 use super::{
-    pictures,
+    marks, pictures,
     walks::{Walk, conditions, walks},
 };
 use crate::{
@@ -73,6 +73,7 @@ pub(super) fn make(args: &StudyNew, output: &Output) -> Result<(), Error> {
     if routes < asked {
         output.say(format_args!("there are only {} with a text of every condition", count(routes, "path")));
     }
+    marks::mark(&mut walks, &conditions, &*platform, output)?;
     let folder = args.out.join("pictures");
     fs::create_dir_all(&folder).map_err(Error::io(&folder, "make the folder"))?;
     let scenes = match mode {

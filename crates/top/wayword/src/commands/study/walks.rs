@@ -50,20 +50,26 @@ struct Bare {
 /// # Errors
 /// When two have one name, or a control lacks what it needs.
 pub(super) fn conditions(args: &StudyNew) -> Result<Vec<Condition>, Error> {
-    let run =
-        |set: &crate::cli::NamedSet| Condition { name: set.name.clone(), kind: Kind::Run, source: set.source.clone() };
+    let condition = |name: &str, kind, source: String| Condition {
+        name: name.to_owned(),
+        kind,
+        source,
+        shows_doubts: args.doubts.iter().any(|shown| shown == name),
+    };
+    let run = |set: &crate::cli::NamedSet| condition(&set.name, Kind::Run, set.source.clone());
     let mut all: Vec<Condition> = args.run.iter().map(run).collect();
     if args.include.contains(&Control::People) {
         let Some(file) = &args.episodes else {
             let problem = "--include people: it is not known which texts people wrote";
             return Err(Error::usage(problem, "give the dataset's file with --episodes"));
         };
-        all.push(Condition { name: PEOPLE.to_owned(), kind: Kind::People, source: file.display().to_string() });
+        all.push(condition(PEOPLE, Kind::People, file.display().to_string()));
     }
     if args.include.contains(&Control::OtherPath) {
         let of = if args.include.contains(&Control::People) { PEOPLE } else { &args.run[0].name };
-        all.push(Condition { name: OTHER_PATH.to_owned(), kind: Kind::OtherPath, source: of.to_owned() });
+        all.push(condition(OTHER_PATH, Kind::OtherPath, of.to_owned()));
     }
+    check_doubts(args, &all)?;
     let names: BTreeSet<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
     if names.len() < all.len() {
         return Err(Error::usage(
@@ -78,6 +84,22 @@ pub(super) fn conditions(args: &StudyNew) -> Result<Vec<Condition>, Error> {
         ));
     }
     Ok(all)
+}
+
+/// Refuses marks of a set that there is not, and marks for people who do not walk.
+fn check_doubts(args: &StudyNew, all: &[Condition]) -> Result<(), Error> {
+    if let Some(name) = args.doubts.iter().find(|name| all.iter().all(|condition| condition.name != **name)) {
+        let names: Vec<&str> = all.iter().map(|condition| condition.name.as_str()).collect();
+        return Err(Error::usage(
+            format!("--doubts {name}: there is no such set"),
+            format!("there are: {}", names.join(", ")),
+        ));
+    }
+    if !args.doubts.is_empty() && args.mode != crate::cli::StudyMode::Follow {
+        let problem = "--doubts: words are marked only for people who walk by a text";
+        return Err(Error::usage(problem, "use --mode follow, or leave out --doubts"));
+    }
+    Ok(())
 }
 
 /// The paths that have a text of every condition, one for each path, in an order drawn by the seed.
@@ -109,6 +131,8 @@ pub(super) fn walks(
     let mut texts: Vec<BTreeMap<&str, String>> = Vec::new();
     for item in &bare {
         let mut of_item = BTreeMap::new();
+        // Two conditions of one source have the same text: they differ in what is marked.
+        let mut of_source: BTreeMap<&str, String> = BTreeMap::new();
         for condition in conditions {
             let found = match condition.kind {
                 Kind::Run => sets.get(condition.name.as_str()).and_then(|set| set.get(&item.id)),
@@ -116,7 +140,9 @@ pub(super) fn walks(
                 Kind::OtherPath => None,
             };
             if let Some(found) = found.filter(|found| !found.is_empty()) {
-                of_item.insert(condition.name.as_str(), found[drawn.random_range(0..found.len())].clone());
+                let draw = || found[drawn.random_range(0..found.len())].clone();
+                let text = of_source.entry(condition.source.as_str()).or_insert_with(draw).clone();
+                of_item.insert(condition.name.as_str(), text);
             }
         }
         texts.push(of_item);
@@ -135,7 +161,7 @@ pub(super) fn walks(
                 Kind::OtherPath => texts.get(elsewhere.get(at).copied().flatten()?)?.get(condition.source.as_str()),
                 _ => texts[at].get(condition.name.as_str()),
             };
-            Some(Told { condition: condition.name.clone(), text: text?.clone() })
+            Some(Told { condition: condition.name.clone(), text: text?.clone(), marks: Vec::new() })
         };
         conditions.iter().map(text).collect()
     };

@@ -1,0 +1,279 @@
+//! Words of a text that a reader should doubt, and what may stand there instead.
+//!
+//! Doubts are for readers, and no verdict: words may be right that are doubted.
+
+use serde::{Deserialize, Serialize};
+use std::cmp::Reverse;
+
+/// How much words are doubted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grade {
+    /// Nothing says that they are right.
+    Uncertain,
+    /// They are likely wrong.
+    Likely,
+}
+
+impl Grade {
+    /// Both, the stronger one first.
+    pub const ALL: [Self; 2] = [Self::Likely, Self::Uncertain];
+
+    /// Its name, in files and on the screen.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uncertain => "uncertain",
+            Self::Likely => "likely",
+        }
+    }
+
+    /// What it says of words, for readers.
+    #[must_use]
+    pub fn told(self) -> &'static str {
+        match self {
+            Self::Uncertain => "uncertain",
+            Self::Likely => "likely wrong",
+        }
+    }
+}
+
+/// Why words are doubted, the strongest cause first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cause {
+    /// A check found them wrong.
+    Wrong,
+    /// Other words would fit the path better.
+    Change,
+    /// They may mean several places or objects.
+    Ambiguous,
+    /// No evidence decides whether they are right.
+    Unverified,
+}
+
+impl Cause {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Wrong, Self::Change, Self::Ambiguous, Self::Unverified];
+
+    /// Its name, in files and on the screen.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wrong => "wrong",
+            Self::Change => "change",
+            Self::Ambiguous => "ambiguous",
+            Self::Unverified => "unverified",
+        }
+    }
+}
+
+/// What may stand in the place of doubted words.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Alternative {
+    /// The words; `None` where the doubted words are better left out.
+    pub words: Option<String>,
+    /// How much better the text fits the path with them, natural logs; `None` where they are offered for another reason.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
+}
+
+/// Words that a reader should doubt.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Doubt {
+    /// Their byte range in the text.
+    pub span: [usize; 2],
+    /// How much they are doubted.
+    pub grade: Grade,
+    /// Why, by its kind.
+    pub cause: Cause,
+    /// Why, in a sentence.
+    pub reason: String,
+    /// What may stand there instead, the best first; at most [`MOST_ALTERNATIVES`].
+    pub alternatives: Vec<Alternative>,
+}
+
+/// Most alternatives of a doubt.
+pub const MOST_ALTERNATIVES: usize = 3;
+/// Most doubts of a text.
+pub const MOST_DOUBTS: usize = 40;
+/// The longest words of an alternative, bytes.
+const LONGEST_WORDS: usize = 200;
+
+impl Doubt {
+    /// What its best alternative gains, natural logs; 0 where that is not known.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.alternatives.iter().filter_map(|one| one.gain).fold(0.0, f64::max)
+    }
+
+    /// Takes over what a weaker doubt offers, where that lies within this one.
+    pub fn take_over(&mut self, text: &str, weaker: &Self) {
+        let [from, to] = self.span;
+        let around = (text.get(from..weaker.span[0]), text.get(weaker.span[1]..to));
+        let (Some(before), Some(after)) = around else { return };
+        for Alternative { words, gain } in &weaker.alternatives {
+            let words = match words {
+                Some(words) => Some(format!("{before}{words}{after}")),
+                None if before.is_empty() && after.is_empty() => None,
+                // Words that are left out within others leave too many blanks, or a capital, behind.
+                None => continue,
+            };
+            self.alternatives.push(Alternative { words, gain: *gain });
+        }
+    }
+}
+
+/// The doubts of a text, in its order and apart from each other. Of two that overlap, the stronger one stays; it takes over what
+/// the other offers in its place. What is outside the text, or within a character, is left out.
+#[must_use]
+pub fn apart_in(text: &str, doubts: Vec<Doubt>) -> Vec<Doubt> {
+    let trimmed = doubts.into_iter().filter_map(|doubt| trimmed(text, doubt));
+    let mut doubts: Vec<Doubt> = trimmed.collect();
+    doubts.sort_by(|a, b| {
+        let key = |doubt: &Doubt| (Reverse(doubt.grade), doubt.cause);
+        key(a).cmp(&key(b)).then(b.gain().total_cmp(&a.gain())).then(a.span.cmp(&b.span))
+    });
+    let mut kept: Vec<Doubt> = Vec::new();
+    for doubt in doubts {
+        if let Some(stronger) = kept.iter_mut().find(|other| overlap(other.span, doubt.span)) {
+            stronger.take_over(text, &doubt);
+        } else if kept.len() < MOST_DOUBTS {
+            kept.push(doubt);
+        }
+    }
+    kept.iter_mut().for_each(|doubt| tidy(text, doubt));
+    kept.sort_by_key(|doubt| doubt.span);
+    kept
+}
+
+/// Cuts a text where doubts begin and end: each run of words, with the doubt about it. All runs together are the text. Doubts
+/// that are out of order, overlap or do not lie in the text are left out, so they may come from a file.
+pub fn parts<'a, D>(text: &'a str, doubts: &'a [D], span: impl Fn(&D) -> [usize; 2]) -> Vec<(&'a str, Option<&'a D>)> {
+    let mut parts = Vec::new();
+    let mut done = 0;
+    for doubt in doubts {
+        let [from, to] = span(doubt);
+        let (Some(before), Some(words)) = (text.get(done..from), text.get(from..to)) else { continue };
+        if words.is_empty() {
+            continue;
+        }
+        parts.extend((!before.is_empty()).then_some((before, None)));
+        parts.push((words, Some(doubt)));
+        done = to;
+    }
+    let rest = &text[done..];
+    parts.extend((!rest.is_empty()).then_some((rest, None)));
+    parts
+}
+
+/// Whether two byte ranges share a byte.
+#[must_use]
+pub fn overlap(a: [usize; 2], b: [usize; 2]) -> bool {
+    a[0] < b[1] && b[0] < a[1]
+}
+
+/// A doubt without the blanks and marks around its words; `None` where no word is left.
+fn trimmed(text: &str, doubt: Doubt) -> Option<Doubt> {
+    let words = text.get(doubt.span[0]..doubt.span[1])?;
+    let is_around = |c: char| c.is_whitespace() || matches!(c, '.' | ',' | ';' | ':' | '!' | '?');
+    let after_start = words.trim_start_matches(is_around);
+    let from = doubt.span[1] - after_start.len();
+    let to = from + after_start.trim_end_matches(is_around).len();
+    (from < to).then_some(Doubt { span: [from, to], ..doubt })
+}
+
+/// Orders the alternatives of a doubt, the best first and before it those of which no gain is known, and leaves out those that say the same, and too many.
+fn tidy(text: &str, doubt: &mut Doubt) {
+    let told = text[doubt.span[0]..doubt.span[1]].to_lowercase();
+    let mut seen: Vec<Option<String>> = vec![Some(told)];
+    let gain = |one: &Alternative| one.gain.unwrap_or(f64::INFINITY);
+    doubt.alternatives.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+    doubt.alternatives.retain(|one| {
+        let key = one.words.as_ref().map(|words| words.to_lowercase());
+        let is_fit = one.words.as_ref().is_none_or(|words| !words.trim().is_empty() && words.len() <= LONGEST_WORDS);
+        let is_new = is_fit && !seen.contains(&key);
+        seen.push(key);
+        is_new
+    });
+    doubt.alternatives.truncate(MOST_ALTERNATIVES);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng;
+    use rand::Rng;
+
+    fn doubt(span: [usize; 2], grade: Grade, words: &[(Option<&str>, f64)]) -> Doubt {
+        let alternative =
+            |(words, gain): &(Option<&str>, f64)| Alternative { words: words.map(str::to_owned), gain: Some(*gain) };
+        let alternatives = words.iter().map(alternative).collect();
+        Doubt { span, grade, cause: Cause::Change, reason: "r".into(), alternatives }
+    }
+
+    fn told(doubts: &[Doubt]) -> Vec<([usize; 2], Vec<Option<&str>>)> {
+        doubts
+            .iter()
+            .map(|doubt| (doubt.span, doubt.alternatives.iter().map(|one| one.words.as_deref()).collect()))
+            .collect()
+    }
+
+    const TEXT: &str = "Walk on. Turn left.";
+
+    #[test]
+    fn doubts_of_the_same_words_are_one_with_the_best_alternative_first() {
+        let turn = [9, 18];
+        let doubts = vec![
+            doubt(turn, Grade::Uncertain, &[(Some("Turn right"), 1.0), (Some("turn LEFT"), 9.0)]),
+            doubt(turn, Grade::Likely, &[(None, 3.0)]),
+        ];
+        let apart = apart_in(TEXT, doubts);
+        assert_eq!(told(&apart), [(turn, vec![None, Some("Turn right")])]);
+        assert_eq!(apart[0].grade, Grade::Likely);
+    }
+
+    #[test]
+    fn a_stronger_doubt_says_what_a_weaker_one_within_it_offers() {
+        let doubts = vec![
+            doubt([0, 19], Grade::Likely, &[(None, 5.0)]),
+            doubt([14, 18], Grade::Uncertain, &[(Some("right"), 1.0), (None, 2.0)]),
+        ];
+        assert_eq!(told(&apart_in(TEXT, doubts)), [([0, 18], vec![None, Some("Walk on. Turn right")])]);
+    }
+
+    #[test]
+    fn marks_and_blanks_around_words_are_not_doubted() {
+        let doubts = vec![doubt([7, 19], Grade::Uncertain, &[]), doubt([7, 9], Grade::Uncertain, &[])];
+        assert_eq!(told(&apart_in(TEXT, doubts)), [([9, 18], vec![])]);
+    }
+
+    #[test]
+    fn whatever_the_spans_doubts_are_apart_in_order_and_in_the_text() {
+        let texts = ["", "a", "Go on.", "Türe – 門 hinter 🪑", "\u{202e}e\u{301}x . , and so on , left ."];
+        let mut random = rng(7, &["doubts"]);
+        for text in texts.iter().cycle().take(3000) {
+            let doubts: Vec<Doubt> = (0..8)
+                .map(|at| {
+                    let mut place = || random.random_range(0..=text.len() + 2);
+                    let span = [place(), place()];
+                    let grade = Grade::ALL[at % 2];
+                    doubt(span, grade, &[(Some("x"), 1.0), (None, 2.0), (Some("y"), 3.0), (Some("ß"), f64::NAN)])
+                })
+                .collect();
+            let raw: String = parts(text, &doubts, |doubt| doubt.span).iter().map(|part| part.0).collect();
+            assert_eq!(raw, *text, "doubts of a file may be anything");
+            let apart = apart_in(text, doubts);
+            for doubt in &apart {
+                assert!(!text[doubt.span[0]..doubt.span[1]].trim().is_empty());
+                assert!(doubt.alternatives.len() <= MOST_ALTERNATIVES);
+            }
+            assert!(apart.windows(2).all(|pair| pair[0].span[1] <= pair[1].span[0]));
+            let parts = parts(text, &apart, |doubt| doubt.span);
+            assert_eq!(parts.iter().map(|part| part.0).collect::<String>(), *text);
+            assert_eq!(parts.iter().filter(|part| part.1.is_some()).count(), apart.len());
+        }
+    }
+}

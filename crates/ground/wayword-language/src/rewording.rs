@@ -1,0 +1,244 @@
+//! Which words of a text tell a turn, a side, a climb or a way by a place, and how the text would tell it otherwise.
+
+use crate::text::{Token, tokens};
+
+crate::data::lists! {
+    "words/rewording.txt";
+    words: SIDES, CLIMBS, TURNING, BEFORE_TURN, BELONGING, LINKING, BEFORE_NAME, PREPOSITIONS, WAY_VERBS, WALKING;
+    phrases:;
+}
+
+/// How far before its side the words of a turn may begin, tokens.
+const TURN_REACH: usize = 6;
+/// How far before a place the words may stand that say how the walk goes by it, tokens.
+const WAY_REACH: usize = 5;
+
+/// A text with its tokens. Byte ranges that do not fit it have no words.
+#[derive(Debug)]
+pub struct Spelt<'a> {
+    text: &'a str,
+    tokens: Vec<Token>,
+}
+
+/// Words that say how a walk goes by a place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Way {
+    /// Their byte range: "walk past".
+    pub span: [usize; 2],
+    /// The verb that stays before another preposition, with a blank behind it; empty where there is none.
+    pub verb: String,
+}
+
+impl<'a> Spelt<'a> {
+    /// A text.
+    #[must_use]
+    pub fn of(text: &'a str) -> Self {
+        Self { text, tokens: tokens(text) }
+    }
+
+    /// The words of a byte range, as they are written.
+    #[must_use]
+    pub fn words(&self, [from, to]: [usize; 2]) -> &'a str {
+        self.text.get(from..to).unwrap_or_default()
+    }
+
+    /// The tokens within a byte range.
+    fn within(&self, [from, to]: [usize; 2]) -> &[Token] {
+        let first = self.tokens.partition_point(|token| token.span[0] < from);
+        let end = self.tokens.partition_point(|token| token.span[1] <= to);
+        self.tokens.get(first..end.max(first)).unwrap_or_default()
+    }
+
+    /// The words of a turn, from its verb on: "turn slightly left". `side` is the byte range of the word that tells the side.
+    #[must_use]
+    pub fn turn(&self, step: [usize; 2], side: [usize; 2]) -> [usize; 2] {
+        let before = self.within([step[0], side[0]]);
+        let between = before.iter().rev().take_while(|token| BEFORE_TURN.contains(&&*token.word)).take(TURN_REACH);
+        let at = before.len() - between.count();
+        let verb = before[..at].last().filter(|token| TURNING.contains(&&*token.word));
+        let from = verb.map_or_else(|| beginning(&before[at..], side[0]), |verb| verb.span[0]);
+        let next = self.tokens.iter().find(|token| token.span[0] >= side[1]).filter(|next| next.word == "turn");
+        [from, next.map_or(side[1], |next| next.span[1])]
+    }
+
+    /// The first words of a step that say on which side something is: "on your left".
+    #[must_use]
+    pub fn side(&self, step: [usize; 2]) -> Option<[usize; 2]> {
+        let tokens = self.within(step);
+        let at = tokens.iter().position(|token| opposite(&token.word, &SIDES).is_some())?;
+        Some([beginning(&tokens[..at], tokens[at].span[0]), tokens[at].span[1]])
+    }
+
+    /// Words with left and right exchanged; `None` where they name no side.
+    #[must_use]
+    pub fn other_side(&self, span: [usize; 2]) -> Option<String> {
+        self.exchanged(span, &SIDES)
+    }
+
+    /// The word of a step that tells the way of its climb, and the word for the other way. In "walk down the hall and up the
+    /// stairs" it is the last one.
+    #[must_use]
+    pub fn climb(&self, step: [usize; 2], is_up: bool) -> Option<([usize; 2], String)> {
+        let says = |token: &&Token| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
+        let span = self.within(step).iter().rev().find(says)?.span;
+        Some((span, self.exchanged(span, &CLIMBS)?))
+    }
+
+    /// A step without the marks and words that join it to others; `None` where nothing is left.
+    #[must_use]
+    pub fn step(&self, step: [usize; 2]) -> Option<[usize; 2]> {
+        let tells = |token: &&Token| token.is_word() && !LINKING.contains(&&*token.word);
+        let tokens = self.within(step);
+        Some([tokens.iter().find(tells)?.span[0], tokens.iter().rev().find(tells)?.span[1]])
+    }
+
+    /// The words before a place that say how the walk goes by it: "walk past", "exit". `None` where no such words are there.
+    #[must_use]
+    pub fn way(&self, step: [usize; 2], place: [usize; 2]) -> Option<Way> {
+        let before = self.within([step[0], place[0]]);
+        let near = &before[before.len().saturating_sub(WAY_REACH)..];
+        let says = |list: &[&str], token: &Token| list.contains(&&*token.word);
+        let last = near.iter().rposition(|token| says(&PREPOSITIONS, token) || says(&WAY_VERBS, token))?;
+        if says(&WAY_VERBS, &near[last]) {
+            return Some(Way { span: near[last].span, verb: "walk ".into() });
+        }
+        let first = near[..last].iter().rposition(|token| !says(&PREPOSITIONS, token)).map_or(0, |at| at + 1);
+        let verb = near[..first].last().filter(|token| says(&WALKING, token));
+        let from = verb.map_or(near[first].span[0], |verb| verb.span[0]);
+        let verb = verb.map_or_else(String::new, |verb| format!("{} ", verb.word));
+        Some(Way { span: [from, near[last].span[1]], verb })
+    }
+
+    /// Whether no word before a name describes what it names: an article, or nothing but words of the way, is there.
+    #[must_use]
+    pub fn is_bare(&self, name: [usize; 2]) -> bool {
+        let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
+        let is_of_name = |token: &Token| token.is_word() && !BEFORE_NAME.contains(&&*token.word);
+        !before.is_some_and(is_of_name)
+    }
+
+    /// A name with the article "a" or "an" that stands right before it, because that depends on the name.
+    #[must_use]
+    pub fn with_its_article(&self, name: [usize; 2]) -> [usize; 2] {
+        let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
+        let article = before.filter(|token| matches!(token.word.as_str(), "a" | "an"));
+        [article.map_or(name[0], |token| token.span[0]), name[1]]
+    }
+
+    /// The words of a byte range with their opposites; `None` where they have none.
+    fn exchanged(&self, [from, to]: [usize; 2], pairs: &[&str]) -> Option<String> {
+        let (mut told, mut done) = (String::new(), from);
+        for token in self.within([from, to]) {
+            let Some(other) = opposite(&token.word, pairs) else { continue };
+            told.push_str(self.words([done, token.span[0]]));
+            told.push_str(&in_capitals_of(self.words(token.span), other));
+            done = token.span[1];
+        }
+        told.push_str(self.words([done, to]));
+        (done > from).then_some(told)
+    }
+}
+
+/// Where the words that belong to a side begin.
+fn beginning(before: &[Token], side: usize) -> usize {
+    let belong = before.iter().rev().take_while(|token| BELONGING.contains(&&*token.word));
+    belong.last().map_or(side, |first| first.span[0])
+}
+
+/// The other word of a pair.
+fn opposite<'a>(word: &str, pairs: &[&'a str]) -> Option<&'a str> {
+    let at = pairs.iter().position(|one| *one == word)?;
+    pairs.get(at ^ 1).copied()
+}
+
+/// Words in the capitals of others: all of them, the first one, or none.
+#[must_use]
+pub fn in_capitals_of(like: &str, words: &str) -> String {
+    let mut letters = like.chars().filter(|c| c.is_alphabetic());
+    let is_first = letters.next().is_some_and(char::is_uppercase);
+    let rest: Vec<char> = letters.collect();
+    if is_first && !rest.is_empty() && rest.iter().all(|c| c.is_uppercase()) {
+        return words.to_uppercase();
+    }
+    let mut chars = words.chars();
+    match chars.next() {
+        Some(letter) if is_first => letter.to_uppercase().chain(chars).collect(),
+        _ => words.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(text: &str, words: &str) -> [usize; 2] {
+        let from = text.find(words).unwrap();
+        [from, from + words.len()]
+    }
+
+    #[test]
+    fn a_turn_is_told_from_its_verb_on() {
+        for (text, side, told, other) in [
+            ("Turn left.", "left", "Turn left", "Turn right"),
+            ("then take a sharp Right at the sofa", "Right", "take a sharp Right", "take a sharp Left"),
+            ("walk on and make a left turn", "left", "make a left turn", "make a right turn"),
+            ("the door to your left", "left", "to your left", "to your right"),
+            ("geh LEFT", "LEFT", "LEFT", "RIGHT"),
+        ] {
+            let spelt = Spelt::of(text);
+            let span = spelt.turn([0, text.len()], range(text, side));
+            assert_eq!((spelt.words(span), spelt.other_side(span).as_deref()), (told, Some(other)));
+        }
+    }
+
+    #[test]
+    fn a_side_and_a_climb_are_found_in_their_step() {
+        let text = "Walk down the hall and up the stairs, the door is on your left";
+        let spelt = Spelt::of(text);
+        let step = [0, text.len()];
+        assert_eq!(spelt.words(spelt.side(step).unwrap()), "on your left");
+        let (span, other) = spelt.climb(step, true).unwrap();
+        assert_eq!((spelt.words(span), &*other), ("up", "down"));
+        assert_eq!(spelt.climb([0, 10], true), None);
+        assert_eq!(spelt.words(spelt.step(range(text, "and up the stairs, ")).unwrap()), "up the stairs");
+        assert_eq!(spelt.step(range(text, "and ")), None);
+    }
+
+    #[test]
+    fn the_way_by_a_place_is_a_preposition_with_its_verb_or_a_verb() {
+        for (text, words, verb) in [
+            ("Walk past the sofa", "Walk past", "walk "),
+            ("and head out of the large sofa", "head out of", "head "),
+            ("Leave the sofa", "Leave", "walk "),
+            ("down to the sofa", "down to", ""),
+        ] {
+            let spelt = Spelt::of(text);
+            let way = spelt.way([0, text.len()], range(text, "sofa")).unwrap();
+            assert_eq!((spelt.words(way.span), &*way.verb), (words, verb));
+        }
+        assert_eq!(Spelt::of("the sofa").way([0, 8], [4, 8]), None);
+    }
+
+    #[test]
+    fn a_name_is_bare_where_no_word_describes_it() {
+        for (text, is_bare) in [("by the oven", true), ("oven", true), ("past an oven", true), ("a gas oven", false)] {
+            assert_eq!(Spelt::of(text).is_bare(range(text, "oven")), is_bare, "{text}");
+        }
+    }
+
+    #[test]
+    fn an_article_before_a_name_goes_with_it() {
+        let (text, spelt) = ("by an oven", Spelt::of("by an oven"));
+        assert_eq!(spelt.words(spelt.with_its_article(range(text, "oven"))), "an oven");
+        assert_eq!(spelt.with_its_article([3, 5]), [3, 5]);
+    }
+
+    #[test]
+    fn ranges_that_do_not_fit_have_no_words() {
+        let spelt = Spelt::of("門 left 🪑");
+        for span in [[1, 2], [9, 3], [usize::MAX, usize::MAX]] {
+            assert_eq!(spelt.words(span), "");
+            assert_eq!((spelt.side(span), spelt.step(span)), (None, None));
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Other places that would fit the walk better than the ones that a text names.
+
+use super::{MOST_PLACES, Site, Source, best_first, is_stairs};
+use crate::{
+    building::Building,
+    guide::{Guide, Mention, Trial},
+    near::Nearness,
+    one_walk::OneWalk,
+    route::Known,
+};
+use std::{cmp::Reverse, collections::BTreeMap};
+use wayword_core::Alternative;
+use wayword_language::{
+    lexicon::{agree, is_plural, plural, same_room, says_several, thing, with_article},
+    rewording::{Spelt, in_capitals_of},
+};
+
+/// Names of rooms, and of things, that are tried for each place.
+const MOST_NAMES: usize = 20;
+/// The least salience of a thing that is named to readers.
+const LEAST_SALIENCE: u8 = 2;
+
+/// What stands along the walk, held against each place that the text names.
+pub(super) fn sites(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, walk: &OneWalk<'_>) -> Vec<Site> {
+    let names = along(known.building, known.walk);
+    let trial = Trial::new(guide, known.building);
+    let as_told = walk.score(guide);
+    let mut sites = Vec::new();
+    for (step, place) in guide.places().take(MOST_PLACES) {
+        let mention = &guide.steps[step].mentions[place];
+        // A word before the name may belong to the old thing alone: "the water fountain".
+        let Some(span) = mention.span.filter(|span| spelt.is_bare(*span)) else { continue };
+        let is_found = trial.found[step].iter().any(|found| std::ptr::eq(found.mention, mention));
+        let told = spelt.with_its_article(span);
+        let alternative = |name: &Nearness| {
+            let mut changed = guide.clone();
+            changed.steps[step].mentions[place].meanings = vec![name.clone()];
+            let gain = walk.score(&changed) - as_told;
+            Alternative { words: Some(instead(spelt, span, told, &name.name)), gain: Some(gain) }
+        };
+        let alternatives = best_first(names.iter().filter(|name| may_be(mention, name)).map(alternative));
+        let source = if is_found { Source::Place } else { Source::Unknown };
+        sites.extend(Site::of(source, told, alternatives));
+    }
+    sites
+}
+
+/// The rooms of a walk, and the things that are seen from it, those that one notices first.
+fn along(building: &Building, walk: &[usize]) -> Vec<Nearness> {
+    let mut rooms: Vec<&str> = walk.iter().filter_map(|at| building.viewpoints[*at].room.as_deref()).collect();
+    rooms.sort_unstable();
+    rooms.dedup();
+    let mut things: BTreeMap<&str, u8> = BTreeMap::new();
+    for seen in &building.things {
+        let salience = thing(&seen.name).map_or(0, |thing| thing.salience);
+        if salience >= LEAST_SALIENCE && seen.seen_from.iter().any(|at| walk.contains(at)) {
+            things.insert(&seen.name, salience);
+        }
+    }
+    let mut things: Vec<(&str, u8)> = things.into_iter().collect();
+    things.sort_by_key(|(name, salience)| (Reverse(*salience), *name));
+    let room = rooms.into_iter().map(|name| Nearness { is_room: true, name: name.to_owned() });
+    let thing = things.into_iter().map(|(name, _)| Nearness { is_room: false, name: name.to_owned() });
+    room.take(MOST_NAMES).chain(thing.take(MOST_NAMES)).collect()
+}
+
+/// Whether a name is another one, of what the text names there: a room for a room.
+fn may_be(mention: &Mention, name: &Nearness) -> bool {
+    let is_alike = mention.meanings.iter().any(|what| what.is_room == name.is_room);
+    let is_same = |what: &Nearness| {
+        agree(&what.name, &name.name) || agree(&name.name, &what.name) || same_room(&what.name, &name.name)
+    };
+    let is_climbed = is_stairs(&name.name) || mention.meanings.iter().any(|what| is_stairs(&what.name));
+    is_alike && !is_climbed && !mention.meanings.iter().any(is_same)
+}
+
+/// A name in the place of another, in its number, with its article and in its capitals. `told` is the old name with the article "a"
+/// or "an", where it has one.
+fn instead(spelt: &Spelt<'_>, old: [usize; 2], told: [usize; 2], name: &str) -> String {
+    let has_article = told != old;
+    let name = match name {
+        name if says_several(spelt.words(old)) => plural(name),
+        name if has_article && !is_plural(name) => with_article(name),
+        name => name.to_owned(),
+    };
+    in_capitals_of(spelt.words(told), &name)
+}

@@ -1,0 +1,54 @@
+//! Doubts that checks raise, and that a text may mean several things.
+
+use crate::guide::Guide;
+use wayword_core::{Alternative, Ambiguity, Cause, Check, Doubt, Finding, Grade, Verdict};
+use wayword_language::{lexicon::is_room, reading::Reading, rewording::Spelt};
+
+/// The doubts of what checks found of words. How a text is written, and what is not understood of it, says nothing of its path.
+#[must_use]
+pub fn of_findings(findings: &[Finding]) -> Vec<Doubt> {
+    let doubt = |finding: &Finding| {
+        let (grade, cause) = match finding.verdict {
+            Verdict::Pass => return None,
+            Verdict::Unverified => (Grade::Uncertain, Cause::Unverified),
+            Verdict::Fail => (Grade::Likely, Cause::Wrong),
+        };
+        let is_of_path = !matches!(finding.check, Check::Form | Check::Leak | Check::Coverage);
+        let span = finding.span.filter(|_| is_of_path)?;
+        Some(Doubt { span, grade, cause, reason: finding.reason.clone(), alternatives: Vec::new() })
+    };
+    findings.iter().filter_map(doubt).collect()
+}
+
+/// The doubts of a text that may mean several places, or several objects: about its end, and about the object of its task.
+#[must_use]
+pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Ambiguity) -> Vec<Doubt> {
+    let doubt = |span, reason, alternatives| Doubt {
+        span,
+        grade: Grade::Uncertain,
+        cause: Cause::Ambiguous,
+        reason,
+        alternatives,
+    };
+    let mut doubts = Vec::new();
+    if let Some((ends, span)) = ambiguity.ends.filter(|ends| *ends > 1).zip(end(&Spelt::of(text), guide)) {
+        let apart = ambiguity.told_apart_by.as_deref().zip(text.get(span[0]..span[1]));
+        let apart = apart.map(|(by, words)| {
+            let joined = if is_room(by) { "in" } else { "by" };
+            Alternative { words: Some(format!("{words} {joined} the {by}")), gain: None }
+        });
+        doubts.push(doubt(span, format!("the text may end at {ends} places"), apart.into_iter().collect()));
+    }
+    let object = reading.task.as_ref().and_then(|task| reading.events.get(task.object?));
+    if let Some(object) = object.filter(|_| ambiguity.objects > 1) {
+        let reason = format!("the task may mean {} objects", ambiguity.objects);
+        doubts.push(doubt(object.span, reason, Vec::new()));
+    }
+    doubts
+}
+
+/// The words that say where the walk ends: the last place of the step at which it stops, or else that step.
+fn end(spelt: &Spelt<'_>, guide: &Guide) -> Option<[usize; 2]> {
+    let stop = guide.steps.iter().rev().find(|told| told.step.stops).or(guide.steps.last())?;
+    stop.mentions.iter().rev().find_map(|mention| mention.span).or_else(|| spelt.step(stop.step.span))
+}
