@@ -12,6 +12,7 @@ pub mod comparison;
 pub mod directions;
 mod error;
 pub mod grounders;
+mod one_line;
 mod sight;
 pub mod swap;
 #[cfg(test)]

@@ -96,12 +96,13 @@ impl<'a> AgentView<'a> {
         Ok(self.grounder.point(&around.views.each_ref(), phrase)?)
     }
 
-    /// The four views of a node, from north clockwise.
+    /// The four views of a node, from north clockwise. They are not kept here: the pictures of many walks would fill the
+    /// memory.
     ///
     /// # Errors
     /// When the platform gives no view.
     pub(crate) fn views(&self, viewpoint: &ViewpointId) -> Result<[View; 4], WalkError> {
-        Ok(self.around(viewpoint)?.views.clone())
+        Ok(self.look_around(viewpoint)?.views)
     }
 
     /// Where a node is, metres, world frame.

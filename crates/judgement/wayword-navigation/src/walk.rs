@@ -70,7 +70,7 @@ pub struct Effort {
     pub most_tokens_in: u64,
     /// Tokens of all replies.
     pub tokens_out: u64,
-    /// US dollars; `None` where a price is not known.
+    /// US dollars of the replies; `None` where a price is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub usd: Option<f64>,
     /// Seconds that the model took, when the calls were made.
@@ -78,6 +78,12 @@ pub struct Effort {
     /// Replies of no use.
     #[serde(default)]
     pub useless: Useless,
+    /// What was wrong with the last of them, and how it began.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last_useless: Option<String>,
+    /// Views that nobody could describe.
+    #[serde(default)]
+    pub undescribed: usize,
 }
 
 /// Replies of no use, by what was wrong with them.
@@ -87,10 +93,18 @@ pub struct Useless {
     pub no_call: usize,
     /// They name a way that there is not.
     pub no_way: usize,
-    /// They only look around once more where the agent has looked around.
+    /// They only look around once more, where the agent stands and has looked around.
     pub idle: usize,
     /// The service gave none: it refused, filtered or failed.
     pub failed: usize,
+}
+
+impl Useless {
+    /// All of them.
+    #[must_use]
+    pub fn sum(&self) -> usize {
+        self.no_call + self.no_way + self.idle + self.failed
+    }
 }
 
 /// One of the four views of a step: north, east, south, west. In files it is a list of its three values, because there
@@ -149,7 +163,7 @@ pub enum End {
     /// It took one hop over and over.
     Circles,
     /// Several replies of its model in a row were of no use.
-    Useless,
+    NoUse,
 }
 
 impl From<(f32, f32, usize)> for Scored {

@@ -39,7 +39,8 @@ impl Stage {
         let behaviour = Behaviour::of("route", known(Gait::Route))
             .and("random", known(Gait::Random(10)))
             .and("broken", known(Gait::Broken))
-            .and("names", Names(known(Gait::Route)));
+            .and("names", Names(known(Gait::Route)))
+            .and("eye", |_: &Heard| "A plain room with a red door and a long grey bench.".to_owned());
         let provider = Provider::start(Behaviour { latency, ..behaviour }).unwrap();
         Self { building, provider }
     }
@@ -106,10 +107,10 @@ fn a_model_that_knows_the_way_arrives_every_time_and_the_table_says_what_it_took
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let found = stage.comparison("walked");
     assert_eq!((success(&found, "tools"), success(&found, "oracle")), (1.0, 1.0));
-    let took = &row(&found, "tools")["took"];
-    let mean = |figure: &str| took[figure]["mean"].as_f64().unwrap();
-    assert!(mean("calls") > mean("hops") && mean("tokens_in") > mean("tokens_out"), "{took}");
-    assert_eq!((took["at_once"].as_u64(), took["useless"]["no_call"].as_u64()), (Some(0), Some(0)));
+    let effort = &row(&found, "tools")["effort"];
+    let mean = |figure: &str| effort[figure]["mean"].as_f64().unwrap();
+    assert!(mean("calls") > mean("hops") && mean("tokens_in") > mean("tokens_out"), "{effort}");
+    assert_eq!((effort["at_once"].as_u64(), effort["useless"]["no_call"].as_u64()), (Some(0), Some(0)));
     let walks = stage.building.lines("walked/walks.jsonl");
     let calls: u64 = walks
         .iter()
@@ -145,13 +146,11 @@ fn a_model_that_breaks_is_counted_and_its_walks_are_scored() {
     let walks = stage.building.lines("walked/walks.jsonl");
     let ends: std::collections::BTreeSet<&str> =
         walks.iter().filter(|walk| walk["agent"] == "tools").map(|walk| walk["end"].as_str().unwrap()).collect();
-    assert!(ends.contains("useless") && ends.len() > 1, "{ends:?} of {} ways to break", MISCHIEF.len());
+    assert!(ends.contains("no-use") && ends.len() > 1, "{ends:?} of {} ways to break", MISCHIEF.len());
     for walk in walks.iter().filter(|walk| walk["agent"] == "tools") {
         assert!(walk["effort"]["calls"].as_u64().unwrap() <= 60 && walk["steps"].as_array().unwrap().len() <= 25);
     }
     assert!(success(&stage.comparison("walked"), "tools") < 1.0);
-    let page = fs::read_to_string(stage.building.path("walked/report.html")).unwrap();
-    assert!(!page.contains("<script"), "what models say is escaped");
 }
 
 #[test]
@@ -161,7 +160,29 @@ fn a_model_that_never_calls_a_tool_ends_the_comparison() {
     let stage = Stage { building, provider };
     let ran = stage.compare("talks", R2R, "walked", &[]);
     assert_eq!(ran.code, Some(1), "{ran:?}");
-    assert!(ran.err.contains("could be used") && ran.err.contains("docs/AGENTS.md"), "{ran:?}");
+    assert!(ran.err.contains("called no tool: Let us see.") && ran.err.contains("docs/AGENTS.md"), "{ran:?}");
+    assert!(stage.building.lines("walked/walks.jsonl").is_empty(), "such walks are not kept");
+}
+
+/// Walks by its route where it is asked about the first instruction alone, and refuses all others.
+struct Refuses(Walker);
+
+impl wayword_testkit::provider::Script for Refuses {
+    fn reply(&self, heard: &Heard) -> String {
+        if heard.prompt().contains("Leave the entryway") { self.0.reply(heard) } else { String::new() }
+    }
+}
+
+/// It can be tried again, so it is no walk.
+#[test]
+fn a_walk_without_a_single_answer_is_an_item_that_failed() {
+    let building = Building::new();
+    let walker = Walker::new(Gait::Route, 0, routes(&building));
+    let provider = Provider::start(Behaviour::of("refuses", Refuses(walker))).unwrap();
+    let stage = Stage { building, provider };
+    let ran = stage.compare("refuses", R2R, "walked", &[]);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(ran.err.contains("empty answer"), "the reason is told: {ran:?}");
 }
 
 #[test]
@@ -201,6 +222,13 @@ fn it_is_told_captions_or_shown_pictures() {
     assert_eq!(ran.code, Some(0), "{ran:?}");
     assert!(ran.out.contains("It is shown four pictures"), "{}", ran.out);
     assert_eq!(success(&stage.comparison("pictures"), "tools"), 1.0);
+    let ran =
+        stage.compare("route", R2R, "captions", &["--limit", "1", "--see", "server/eye", "--record", "calls.jsonl"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(ran.out.contains("It is told what server/eye says"), "{}", ran.out);
+    assert_eq!(success(&stage.comparison("captions"), "tools"), 1.0);
+    let kept = fs::read_to_string(stage.building.path("calls.jsonl")).unwrap();
+    assert!(kept.contains("ahead: A place with a red door"), "the walker is told captions");
     let blind = Stage::new(Duration::ZERO);
     let ran = blind.compare("route", R2R, "pictures", &["--limit", "1", "--see", "pictures"]);
     assert!(ran.err.contains("needs") && ran.code == Some(1), "{ran:?}");
@@ -221,6 +249,7 @@ fn a_dry_run_estimates_and_asks_nothing() {
     let made = stage.provider.requests();
     // The script does not look around at the start.
     assert!(estimated >= made && estimated <= made * 3 / 2, "{estimated} were estimated, {made} made");
+    assert!(json["most_tokens_in"].as_u64().unwrap() > 500, "{json}");
 }
 
 #[test]
@@ -276,6 +305,15 @@ fn a_comparison_that_is_killed_ends_the_same_and_pays_once() {
     assert_eq!(last.code, Some(0), "{last:?}");
     let submissions = |stage: &Stage| files(&stage.building.path("walked/submissions"));
     assert_eq!(submissions(&whole), submissions(&killed));
+    let walks = |stage: &Stage| {
+        let mut walks = stage.building.lines("walked/walks.jsonl");
+        walks
+            .iter_mut()
+            .filter_map(|walk| walk["effort"].as_object_mut())
+            .for_each(|effort| drop(effort.remove("seconds")));
+        walks
+    };
+    assert_eq!(walks(&whole), walks(&killed));
     let log = killed.provider.log();
     let again = log.answered - log.distinct_answered();
     let cost = killed.building.wayword(&["ledger", "cost", "--ledger", "ledger.db", "--json"]).json();

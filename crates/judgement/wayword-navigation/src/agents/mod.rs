@@ -13,7 +13,7 @@ pub use map_reader::{MapReader, Surveyed};
 pub use parameters::{Back, Parameters};
 pub use phrases::walk_by_phrases;
 pub use reader::walk_by_reading;
-pub use tools::{Describes, Limits, Looks, Tools, rehearse, walk_by_tools, wording};
+pub use tools::{Describes, Limits, Looks, MOST_TEXT_CHARS, ModelWalker, rehearse, walk_by_tools, wording};
 pub use wayword_follower::Prior;
 
 use crate::{

@@ -1,13 +1,13 @@
 //! Compares sets of instructions by how well agents walk by them: the paper's table, with intervals, bounds and swap
 //! tests.
 
+mod efforts;
 mod results;
 mod table;
-mod took;
 
+pub use efforts::Efforts;
 pub use results::Results;
 pub use table::{EMPTY, UNREAD, Walker, compare, empty_set, swapped_set};
-pub use took::Took;
 
 use crate::swap::Swap;
 use serde::{Deserialize, Serialize};
@@ -123,7 +123,7 @@ pub struct Row {
     pub against_first: Option<Difference>,
     /// What its walks took, where a language model decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub took: Option<Took>,
+    pub effort: Option<Efforts>,
 }
 
 /// One row less another of the same agent, item by item.

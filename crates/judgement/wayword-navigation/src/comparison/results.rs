@@ -1,6 +1,6 @@
 //! Scores of walks, by agent, set, item and text.
 
-use super::took::Taken;
+use super::efforts::OfWalk;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{Metric, Rule, Score};
 
@@ -8,14 +8,14 @@ use wayword_metrics::{Metric, Rule, Score};
 type Scores = BTreeMap<String, BTreeMap<usize, Score>>;
 
 /// What the walks of one agent on one set took: by item, then by the text's place in its set.
-type Takings = BTreeMap<String, BTreeMap<usize, Taken>>;
+type OfWalks = BTreeMap<String, BTreeMap<usize, OfWalk>>;
 
 /// All scores of a comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Results {
     scores: BTreeMap<(String, String), Scores>,
     /// What walks took, where a language model decided: by agent and set.
-    taken: BTreeMap<(String, String), Takings>,
+    efforts: BTreeMap<(String, String), OfWalks>,
     /// The path of each item.
     clusters: BTreeMap<String, String>,
 }
@@ -28,9 +28,9 @@ impl Results {
     pub fn add(&mut self, walk: &crate::walk::Walk, cluster: &str, score: Score) {
         let scores = self.scores.entry((walk.agent.clone(), walk.set.clone())).or_default();
         scores.entry(walk.item.clone()).or_default().insert(walk.text_index, score);
-        if let Some(taken) = Taken::of(walk) {
-            let all = self.taken.entry((walk.agent.clone(), walk.set.clone())).or_default();
-            all.entry(walk.item.clone()).or_default().insert(walk.text_index, taken);
+        if let Some(effort) = OfWalk::of(walk) {
+            let all = self.efforts.entry((walk.agent.clone(), walk.set.clone())).or_default();
+            all.entry(walk.item.clone()).or_default().insert(walk.text_index, effort);
         }
         self.clusters.entry(walk.item.clone()).or_insert_with(|| cluster.to_owned());
     }
@@ -98,8 +98,8 @@ impl Results {
     }
 
     /// What the walks of an agent by a set took; `None` where no language model decided.
-    pub(super) fn taken(&self, agent: &str, set: &str) -> Option<&Takings> {
-        self.taken.get(&(agent.to_owned(), set.to_owned()))
+    pub(super) fn efforts(&self, agent: &str, set: &str) -> Option<&OfWalks> {
+        self.efforts.get(&(agent.to_owned(), set.to_owned()))
     }
 
     fn of(&self, agent: &str, set: &str) -> Option<&Scores> {

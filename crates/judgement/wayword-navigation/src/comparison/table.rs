@@ -1,7 +1,8 @@
 //! From scores to the table: means over items, intervals clustered by path, differences item by item.
 
 use super::{
-    About, AgentKind, Comparison, Difference, FEWEST_PATHS, Listening, Results, Row, Set, Swapped, Took, results::Texts,
+    About, AgentKind, Comparison, Difference, Efforts, FEWEST_PATHS, Listening, Results, Row, Set, Swapped,
+    results::Texts,
 };
 use crate::swap::Swap;
 use std::collections::BTreeMap;
@@ -89,7 +90,7 @@ impl Table<'_> {
             set: set.map(str::to_owned),
             figures: self.figures(&walker.name, kept, None),
             against_first: first.map(against),
-            took: Took::of(self.results, (&walker.name, kept), |by_item| self.estimate(&by_item)),
+            effort: Efforts::of(self.results, (&walker.name, kept), |by_item| self.estimate(&by_item)),
         }
     }
 

@@ -54,14 +54,6 @@ pub(crate) fn beginning_of(instruction: &str) -> &str {
     beginning(instruction, MOST_BYTES_READ)
 }
 
-/// A text that somebody else wrote as one line without angle brackets, so that it cannot end its marks in a prompt.
-pub(crate) fn one_line(text: &str) -> String {
-    text.split(|c: char| c.is_whitespace() || c.is_control() || matches!(c, '<' | '>'))
-        .filter(|word| !word.is_empty())
-        .collect::<Vec<_>>()
-        .join(" ")
-}
-
 /// The beginning of a phrase that is not too long for a grounder.
 fn short(text: &str) -> String {
     let text = beginning(text.trim(), MOST_BYTES);

@@ -1,6 +1,7 @@
 //! Instructions split by a language model.
 
-use super::{Directions, Splitter, one_line, readable, reply};
+use super::{Directions, Splitter, readable, reply};
+use crate::one_line::one_line;
 use minijinja::{Environment, context};
 use std::sync::Arc;
 use wayword_core::{LanguageModel, Message, ModelError, Reply, Request, Sampling};

@@ -5,7 +5,7 @@
 
 use super::AgentView;
 use crate::{directions::places, error::WalkError, grounders::labels_of};
-use wayword_core::{Compass, Heading, View, ViewpointId};
+use wayword_core::{Compass, Heading, Label, View, ViewpointId};
 use wayword_follower::online::{Hop, Sighting};
 
 /// Where the things come from that an agent is told of.
@@ -74,6 +74,20 @@ impl AgentView<'_> {
             }
         }
         Ok(Surroundings { sighting: Sighting { hops, room: around.views.iter().find_map(room), things: found }, ways })
+    }
+
+    /// The labelled things around a node, and its room; `None` where there are no labels.
+    ///
+    /// # Errors
+    /// When the platform gives no view.
+    pub(crate) fn labelled(&self, here: &ViewpointId) -> Result<Option<(Vec<Label>, Option<String>)>, WalkError> {
+        let around = self.around(here)?;
+        let mut labels = Vec::new();
+        for view in &around.views {
+            let Some(truth) = view.ground_truth() else { return Ok(None) };
+            labels.extend(truth.labels.iter().cloned());
+        }
+        Ok(Some((labels, around.views.iter().find_map(room))))
     }
 
     /// The ways out of a node, for an agent that looks along `heading`: the node that each leads to, and the hop.

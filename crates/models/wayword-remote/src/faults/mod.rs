@@ -168,6 +168,8 @@ fn unsupported(message: &str) -> &'static str {
         " (set omit = [\"seed\"] under the provider's settings)"
     } else if ["response_format", "json_schema", "responseschema", "format"].iter().any(|word| message.contains(word)) {
         " (set json = \"prompt\" under the provider's settings)"
+    } else if message.contains("tool") {
+        " (set tools = false under the provider's settings)"
     } else {
         ""
     }

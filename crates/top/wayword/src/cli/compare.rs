@@ -25,7 +25,7 @@ Examples:
       A language model splits the instructions into phrases, instead of rules.
   wayword compare --platform matterport --data DATA --episodes R2R_val_seen.json --limit 24 --instructions original \\
       --instructions ours=runs/val_seen#r2r --agents tools,reader --llm openai/gpt-4.1-mini --swaps none --dry-run --out runs/tools
-      What it would cost to let a language model walk by the texts with two tools. Without --dry-run it walks.
+      What it would cost to let a language model walk by the texts. Without --dry-run it walks.
 
 Give the same command again to continue a comparison that was stopped. `wayword report --run runs/table` shows the walks on a map.")]
 pub struct Compare {

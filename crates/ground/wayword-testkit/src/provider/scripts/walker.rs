@@ -138,7 +138,7 @@ impl<'a> Prompt<'a> {
         let here = after(prompt, "You stand at place ")? as usize;
         let last = prompt.lines().filter_map(step).next_back();
         let deg = after(prompt, ", and look ").unwrap_or(0.0);
-        let is_left = prompt.contains("degrees to the left of that");
+        let is_left = prompt.contains("degrees to the left of how you looked");
         let heading_rad = if is_left { -deg.to_radians() } else { deg.to_radians() };
         let ways = prompt.split("Ways out:\n").nth(1)?.lines().map_while(way).collect();
         Some(Self { text, here: *places.get(&here)?, heading_rad, hops: last.map_or(0, |(number, ..)| number), ways })
@@ -199,10 +199,10 @@ mod tests {
     use wayword_core::Role;
 
     const PROMPT: &str = "<instruction>\nGo to the sink.\n</instruction>\n\nWhere you have been:\n\
-        place 1: right 0.0, ahead 0.0, up 0.0; hallway; ways to 2, 3 new\n\
-        place 2: right 2.0, ahead 0.0, up 0.0; you did not look around; ways to 1, 1 new\n\n\
-        Your last steps:\n1. from place 1 to place 2: because\n\nYou stand at place 2, and look 90 degrees to the right of that. You can make 23 more steps.\n\
-        Ways out:\n1: behind, 180 degrees right, 2.0 m; to place 1\n2: left, 90 degrees left, 2.2 m, up 1.0 m; new\n";
+        place 1: right 0.0, ahead 0.0, up 0.0; hallway; ways to 2, new (0.0, 2.0)\n\
+        place 2: right 2.0, ahead 0.0, up 0.0; you did not look around; ways to 1, new (2.0, 2.0)\n\n\
+        Your last steps:\n1. from place 1 to place 2: because\n\nYou stand at place 2, and look 90 degrees to the right of how you looked at the start. You can make 23 more steps.\n\
+        Ways out:\n1: behind, 180 degrees right, 2.0 m; to place 1\n2: left, 90 degrees left, 2.2 m, up 1.0 m; new (2.0, 2.0)\n";
 
     fn reply(gait: Gait, route: &[[f64; 3]]) -> String {
         let route = Route(route.iter().map(|place| DVec3::from_array(*place)).collect());

@@ -11,7 +11,7 @@ pub struct Limits {
     pub max_hops: usize,
     /// Most calls of the model.
     pub max_calls: usize,
-    /// Most US dollars for the model's calls. The call that passes it is the last one.
+    /// Most US dollars for the model's replies. The one that passes it is the last.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_usd: Option<f64>,
     /// How many of its last steps the agent is told again, with its reasons.

@@ -1,16 +1,18 @@
 //! What the agent remembers of its walk: a map of where it was, its last steps with their reasons, and its note.
 
 use super::scene::Scene;
+use crate::one_line::quoted;
 use serde::Serialize;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use wayword_core::{DVec3, Heading, ViewpointId};
 
-/// Places of the map that a prompt tells, the last ones. The others are only counted.
+/// Places of the map that a prompt tells, and characters of all of them. The others are only counted.
 const MOST_PLACES: usize = 16;
-/// Ends of ways not taken of a place on the map.
-const MOST_NEW: usize = 8;
-/// Names of things of a place on the map.
-const MOST_NAMES: usize = 6;
+const MOST_MAP_CHARS: usize = 2_500;
+/// Ways of a place on the map.
+const MOST_WAYS: usize = 8;
+/// Longest reason that is told again, characters.
+const MOST_REASON_CHARS: usize = 120;
 
 /// What the agent remembers.
 pub(super) struct Memory {
@@ -19,6 +21,8 @@ pub(super) struct Memory {
     /// In the order in which it first came to them.
     places: Vec<Place>,
     numbers: BTreeMap<ViewpointId, usize>,
+    /// Where it was, place by place, the last one being where it stands.
+    trail: Vec<usize>,
     last: VecDeque<Hopped>,
     keep: usize,
     hops: usize,
@@ -45,18 +49,19 @@ pub(super) struct Hopped {
 impl Memory {
     /// Of a walk that begins at a place; `keep` steps are told again.
     pub(super) fn new(at: DVec3, heading: Heading, keep: usize) -> Self {
-        let (places, numbers, last) = (Vec::new(), BTreeMap::new(), VecDeque::new());
-        Self { origin: (at, heading), places, numbers, last, keep, hops: 0, note: None }
+        let (places, numbers, last, trail) = (Vec::new(), BTreeMap::new(), VecDeque::new(), Vec::new());
+        Self { origin: (at, heading), places, numbers, trail, last, keep, hops: 0, note: None }
     }
 
     /// Comes to a place, for the first time or again. Returns its number, from 1.
     pub(super) fn reach(&mut self, id: &ViewpointId, at: DVec3, ways: Vec<(ViewpointId, DVec3)>) -> usize {
-        if let Some(number) = self.numbers.get(id) {
-            return *number;
-        }
-        self.places.push(Place { at, seen: None, ways });
-        self.numbers.insert(id.clone(), self.places.len());
-        self.places.len()
+        let number = self.number(id).unwrap_or_else(|| {
+            self.places.push(Place { at, seen: None, ways });
+            self.numbers.insert(id.clone(), self.places.len());
+            self.places.len()
+        });
+        self.trail.push(number);
+        number
     }
 
     /// The number of a place where it was.
@@ -67,17 +72,14 @@ impl Memory {
     /// Keeps in short what it saw at a place.
     pub(super) fn saw(&mut self, number: usize, scene: &Scene) {
         if let Some(place) = self.places.get_mut(number - 1) {
-            let names: Vec<&str> = scene.names.iter().take(MOST_NAMES).map(String::as_str).collect();
-            let room = scene.room.as_deref();
-            let parts: Vec<&str> = room.into_iter().chain(names).collect();
-            place.seen = Some(if parts.is_empty() { "nothing with a name".to_owned() } else { parts.join(", ") });
+            place.seen = Some(scene.brief.clone());
         }
     }
 
     /// Keeps a step.
-    pub(super) fn hopped(&mut self, from: usize, to: usize, why: String) {
+    pub(super) fn hopped(&mut self, from: usize, to: usize, why: &str) {
         self.hops += 1;
-        self.last.push_back(Hopped { number: self.hops, from, to, why });
+        self.last.push_back(Hopped { number: self.hops, from, to, why: quoted(why, MOST_REASON_CHARS) });
         while self.last.len() > self.keep {
             self.last.pop_front();
         }
@@ -88,33 +90,53 @@ impl Memory {
         self.last.iter()
     }
 
-    /// The last places of the map, a line each, and how many before them are left out.
-    pub(super) fn map(&self) -> (Vec<String>, usize) {
-        let from = self.places.len().saturating_sub(MOST_PLACES);
-        (self.places.iter().enumerate().skip(from).map(|(at, place)| self.told(at + 1, place)).collect(), from)
-    }
-
     /// How far a direction is turned from the way that the agent looked at the start, radians, positive right.
     pub(super) fn turned(&self, heading: Heading) -> f64 {
         self.origin.1.turn_to(heading)
     }
 
+    /// The places of the map, a line each, and how many are left out: where the agent stands, the start, and of the others
+    /// those where it was last.
+    pub(super) fn map(&self) -> (Vec<String>, usize) {
+        let mut told: BTreeMap<usize, String> = BTreeMap::new();
+        let mut chars = 0;
+        let mut been = BTreeSet::new();
+        let here = self.trail.last().copied();
+        for number in here.into_iter().chain([1]).chain(self.trail.iter().rev().copied()) {
+            let Some(place) = self.places.get(number - 1).filter(|_| been.insert(number)) else { continue };
+            let line = self.told(number, place);
+            chars += line.chars().count();
+            if told.len() == MOST_PLACES || (chars > MOST_MAP_CHARS && told.len() >= 2) {
+                break;
+            }
+            told.insert(number, line);
+        }
+        let left_out = self.places.len() - told.len();
+        (told.into_values().collect(), left_out)
+    }
+
     /// A place, told by where it lies from the start, what was seen there, and where its ways lead.
     fn told(&self, number: usize, place: &Place) -> String {
         let [right_m, ahead_m, up_m] = self.from_start(place.at);
-        let (mut known, mut new) = (Vec::new(), Vec::new());
-        for (way, end) in &place.ways {
-            match self.number(way) {
-                Some(number) => known.push(number),
-                None => new.push(self.from_start(*end)),
-            }
-        }
-        known.sort_unstable();
-        let new = new.iter().take(MOST_NEW).map(|[right_m, ahead_m, _]| format!("new ({right_m:.1}, {ahead_m:.1})"));
-        let ways: Vec<String> = known.iter().map(ToString::to_string).chain(new).collect();
+        let way = |(to, end): &(ViewpointId, DVec3)| match self.number(to) {
+            Some(number) => number.to_string(),
+            None => format!("new {}", self.spot(*end)),
+        };
+        // What leads to places where the agent was comes first.
+        let mut ways: Vec<_> = place.ways.iter().collect();
+        ways.sort_by_key(|(to, _)| self.number(to).unwrap_or(usize::MAX));
+        let more = ways.len().saturating_sub(MOST_WAYS);
+        let more = (more > 0).then(|| format!("{more} more"));
+        let ways: Vec<String> = ways.into_iter().take(MOST_WAYS).map(way).chain(more).collect();
         let ways = if ways.is_empty() { "nowhere".to_owned() } else { ways.join(", ") };
         let seen = place.seen.as_deref().unwrap_or("you did not look around");
         format!("place {number}: right {right_m:.1}, ahead {ahead_m:.1}, up {up_m:.1}; {seen}; ways to {ways}")
+    }
+
+    /// A point of the map in short, as "(1.2, -3.4)": to the right of the start, and ahead.
+    pub(super) fn spot(&self, point: DVec3) -> String {
+        let [right_m, ahead_m, _] = self.from_start(point);
+        format!("({right_m:.1}, {ahead_m:.1})")
     }
 
     /// A point by its distance from the start to the right, ahead and up, as the agent looked there; metres, rounded.
@@ -124,5 +146,38 @@ impl Memory {
         let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
         // Without minus zero.
         [off.dot(right), off.dot(ahead), off.z].map(|m| (m * 10.0).round() / 10.0 + 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A corridor that is walked to its end and back again.
+    #[test]
+    fn the_map_has_the_start_the_end_and_what_is_near_however_long_the_walk() {
+        let id = |at: usize| ViewpointId::new(format!("v{at}")).unwrap();
+        let at = |at: usize| DVec3::new(0.0, at as f64, 0.0);
+        let mut memory = Memory::new(at(0), Heading::NORTH, 6);
+        let ways = |number: usize| vec![(id(number + 1), at(number + 1))];
+        for number in (0..200).chain((100..200).rev()) {
+            memory.reach(&id(number), at(number), ways(number));
+        }
+        let (places, left_out) = memory.map();
+        assert_eq!(places.len() + left_out, 200);
+        assert!(places.len() <= MOST_PLACES && places.len() > 10, "{}", places.len());
+        assert!(places[0].starts_with("place 1: ") && places[1].starts_with("place 101: "), "{places:?}");
+        assert!(places.iter().map(String::len).sum::<usize>() <= MOST_MAP_CHARS);
+    }
+
+    #[test]
+    fn ways_that_are_left_out_are_counted() {
+        let id = |at: usize| ViewpointId::new(format!("v{at}")).unwrap();
+        let mut memory = Memory::new(DVec3::ZERO, Heading::NORTH, 6);
+        memory.reach(&id(0), DVec3::ZERO, (1..31).map(|at| (id(at), DVec3::new(at as f64, 0.0, 0.0))).collect());
+        memory.reach(&id(30), DVec3::new(30.0, 0.0, 0.0), vec![]);
+        let (places, _) = memory.map();
+        assert!(places[0].contains("ways to 2, new (1.0, 0.0), ") && places[0].ends_with("22 more"), "{places:?}");
+        assert!(places[1].ends_with("you did not look around; ways to nowhere"), "{places:?}");
     }
 }

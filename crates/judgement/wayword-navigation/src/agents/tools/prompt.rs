@@ -1,13 +1,12 @@
 //! What the model is told: the tools, and where it stands. Each prompt stands alone, so a walk can go on from the
-//! ledger at any step, and no prompt grows with the walk.
+//! ledger at any step. All of its parts are bounded, so it does not grow with the walk.
 
 use super::{
     limits::Limits,
     memory::Memory,
-    quoted,
     scene::{Scene, turned},
 };
-use crate::error::WalkError;
+use crate::{error::WalkError, one_line::quoted};
 use minijinja::{Environment, context};
 use serde::Serialize;
 use wayword_core::{Heading, Message, ModelError, Request, Role, Sampling, Tool};
@@ -15,8 +14,10 @@ use wayword_follower::online::Hop;
 
 const SYSTEM: &str = include_str!("system.j2");
 const STATE: &str = include_str!("state.j2");
-/// Longest instruction, characters. People's texts have up to about 2,500.
-const MOST_TEXT_CHARS: usize = 3_000;
+/// Longest instruction that the model is told, characters. People's texts have up to about 2,000.
+pub const MOST_TEXT_CHARS: usize = 2_000;
+/// Most ways out that are told.
+const MOST_WAYS: usize = 24;
 /// Most tokens of a reply, thinking included.
 const REPLY_TOKENS: u32 = 600;
 /// Smallest climb that is told, metres.
@@ -86,15 +87,15 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// A hop that leads to the place of that number, where the agent was before.
-    pub(super) fn new(hop: &Hop, leads_to: Option<usize>) -> Self {
+    /// A hop that leads to the place of that number, where the agent was before, or else to a new spot of the map.
+    pub(super) fn new(hop: &Hop, leads_to: Option<usize>, spot: &str) -> Self {
         let rise_m = hop.length_m * libm::sin(hop.elevation_rad);
         let climb = match rise_m {
             rise_m if rise_m >= CLIMB_M => format!(", up {rise_m:.1} m"),
             rise_m if rise_m <= -CLIMB_M => format!(", down {:.1} m", -rise_m),
             _ => String::new(),
         };
-        let to = leads_to.map_or_else(|| "new".to_owned(), |number| format!("to place {number}"));
+        let to = leads_to.map_or_else(|| format!("new {spot}"), |number| format!("to place {number}"));
         Self { words: format!("{}, {:.1} m{climb}; {to}", turned(hop.turn_rad), hop.length_m) }
     }
 }
@@ -107,12 +108,14 @@ pub(super) fn request(state: &State<'_>) -> Result<Request, WalkError> {
     let (here, heading) = here;
     let facing = match memory.turned(heading).to_degrees().round() {
         0.0 => "as at the start".to_owned(),
-        deg if deg > 0.0 => format!("{deg} degrees to the right of that"),
-        deg => format!("{} degrees to the left of that", -deg),
+        deg if deg > 0.0 => format!("{deg} degrees to the right of how you looked at the start"),
+        deg => format!("{} degrees to the left of how you looked at the start", -deg),
     };
     let told = context! {
         text => quoted(state.text, MOST_TEXT_CHARS),
-        places, more, here, facing, ways, trouble,
+        ways => &ways[..ways.len().min(MOST_WAYS)],
+        ways_left_out => ways.len().saturating_sub(MOST_WAYS),
+        places, more, here, facing, trouble,
         last => memory.last_steps().collect::<Vec<_>>(),
         note => memory.note,
         looked => scene.is_some(),

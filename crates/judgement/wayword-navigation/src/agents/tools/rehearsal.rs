@@ -1,6 +1,10 @@
 //! What a walk along a known route would ask of a model, for estimates before anything is asked.
 
-use super::{Called, Limits, Looks, Tools, Walker, reply::Act};
+use super::{
+    Limits, Looks, ModelWalker,
+    reply::{Act, Called},
+    walker::Walker,
+};
 use crate::{agents::Start, error::WalkError, sight::AgentView};
 use wayword_core::{LanguageModel, ModelError, Reply, Request, ViewpointId};
 
@@ -17,8 +21,8 @@ pub fn rehearse(
     (looks, limits): (Looks<'_>, Limits),
     route: &[ViewpointId],
 ) -> Result<Vec<Request>, WalkError> {
-    let tools = Tools { model: &Nobody, looks, limits, seed: 0 };
-    let mut walker = Walker::new(agent_view, start, text, names_object, tools);
+    let by = ModelWalker { model: &Nobody, price: None, looks, limits, seed: 0 };
+    let mut walker = Walker::new(agent_view, start, text, names_object, by);
     let call = |act| Called { act, why: TYPICAL_REASON.to_owned(), note: Some(TYPICAL_NOTE.to_owned()) };
     let mut requests = vec![walker.request()?];
     walker.act(vec![call(Act::Observe)])?;

@@ -1,9 +1,9 @@
 //! What a model's reply calls: tools as lines of a fixed form, whether the service had tool calls or not.
 //!
-//! Models write JSON in many ways, so some that can only mean one call are read too: an object that names its tool, and
-//! a name with nothing but a number behind it. Prose is never taken for a call.
+//! Models write JSON in many ways, so some that can only mean one call are read too: an object that names its tool,
+//! and, where it is the whole reply, a name with nothing but a number behind it. Prose is not taken for a call.
 
-use super::quoted;
+use crate::one_line::quoted;
 use serde_json::Value;
 
 /// A call of a tool.
@@ -47,17 +47,21 @@ const NAMES: [&str; 3] = ["observe", "step", "stop"];
 /// The calls of a reply, in their order; empty where there is none.
 pub(super) fn read(reply: &str) -> Vec<Called> {
     let text = &reply[..reply.floor_char_boundary(MOST_BYTES)];
+    let calls = with_json(text);
+    if calls.is_empty() { bare(text.trim()).into_iter().collect() } else { calls }
+}
+
+/// The calls that have JSON.
+fn with_json(text: &str) -> Vec<Called> {
     let mut calls = Vec::new();
     let mut at = 0;
     while at < text.len() && calls.len() < MOST_CALLS {
         let end = text[at..].find('\n').map_or(text.len(), |end| at + end + 1);
-        let line = text[at..end].trim_start_matches(|c: char| c.is_whitespace() || "-*>`•".contains(c));
-        let from = end - line.len();
+        let line = text[at..end].trim_start_matches(|c: char| c.is_whitespace() || "-*>`•[,".contains(c));
         let (call, after) = match named(line) {
             Some((name, rest)) if rest.starts_with('{') => object(text, end - rest.len(), Some(name)),
-            Some((name, rest)) => (bare(name, rest), end),
-            None if line.starts_with('{') => object(text, from, None),
-            None => (None, end),
+            None if line.starts_with('{') => object(text, end - line.len(), None),
+            _ => (None, end),
         };
         calls.extend(call);
         at = after.max(end);
@@ -79,17 +83,26 @@ fn object(text: &str, from: usize, name: Option<&str>) -> (Option<Called>, usize
     let after = from + values.byte_offset();
     let own = ["tool", "name", "action"].into_iter().find_map(|field| value.get(field)?.as_str());
     let inner = ["arguments", "input", "parameters"].into_iter().find_map(|field| value.get(field));
-    let inner = inner.filter(|inner| inner.is_object() && name.is_none());
-    (name.or(own).and_then(|name| called(name, inner.unwrap_or(&value))), after)
+    let inner = inner.filter(|_| name.is_none()).and_then(arguments);
+    (name.or(own).and_then(|name| called(name, inner.as_ref().unwrap_or(&value))), after)
 }
 
-/// A call with at most a number.
-fn bare(name: &str, rest: &str) -> Option<Called> {
+/// The arguments of a call: an object, also one that stands in a text.
+fn arguments(value: &Value) -> Option<Value> {
+    let object = match value {
+        Value::String(text) => serde_json::from_str(text).ok()?,
+        value => value.clone(),
+    };
+    object.is_object().then_some(object)
+}
+
+/// A reply that is nothing but a tool with at most a number.
+fn bare(reply: &str) -> Option<Called> {
+    let (name, rest) = named(reply.trim_matches('`'))?;
     let rest = rest.trim_end_matches(|c: char| c.is_whitespace() || ")`.".contains(c));
     let rest = rest.strip_prefix("way").map_or(rest, |rest| rest.trim_start_matches([' ', '=', ':']));
-    let number = rest.parse().ok();
     let act = match name {
-        "step" => Act::Step(Some(number?)),
+        "step" => Act::Step(Some(rest.parse().ok()?)),
         "observe" if rest.is_empty() => Act::Observe,
         "stop" if rest.is_empty() => Act::Stop(None),
         _ => return None,
@@ -109,11 +122,14 @@ fn called(name: &str, arguments: &Value) -> Option<Called> {
     Some(Called { act, why: words("why").unwrap_or_default(), note })
 }
 
-/// A number, also one that stands in quotes.
+/// A number, also one that stands in quotes or brackets, or has a decimal point.
 fn number(value: &Value) -> Option<usize> {
     match value {
-        Value::String(text) => text.trim().parse().ok(),
-        value => usize::try_from(value.as_u64()?).ok(),
+        Value::String(text) => text.trim_matches(|c: char| c.is_whitespace() || "[]".contains(c)).parse().ok(),
+        value => {
+            let number = value.as_f64().filter(|number| number.fract() == 0.0 && (0.0..1e6).contains(number))?;
+            Some(number as usize)
+        }
     }
 }
 
@@ -148,6 +164,9 @@ mod tests {
             "- **step {\"way\": \"2\"}",
             "```json\n{\n \"tool\": \"step\",\n \"way\": 2\n}\n```",
             "{\"name\": \"Step\", \"arguments\": {\"way\": 2}}",
+            "{\"name\": \"step\", \"arguments\": \"{\\\"way\\\": 2}\"}",
+            "[{\"tool\": \"step\", \"way\": 2.0}]",
+            "step {\"way\": \"[2]\"}",
             "step(2)",
             "Step: way 2",
             "`step 2`",
@@ -162,6 +181,9 @@ mod tests {
         for reply in [
             "",
             "Stop there and think.",
+            "Step 1.\nThe text says to leave the room.\nStep 2.\nThen it turns.",
+            "Here is my plan:\n- observe\n- step 2\n- stop",
+            "I turn around.\nStop.",
             "Step 2 looks right to me.",
             "I would step {\"way\": 2}",
             "step {\"way\": 2",
@@ -172,7 +194,8 @@ mod tests {
             assert_eq!(acts(reply), [], "{reply}");
         }
         assert_eq!(acts("step {\"way\": -1}"), [Act::Step(None)]);
-        assert_eq!(acts(&"observe\n".repeat(1000)).len(), MOST_CALLS);
+        assert_eq!(acts("step {\"way\": 1.5}"), [Act::Step(None)]);
+        assert_eq!(acts(&"observe {}\n".repeat(1000)).len(), MOST_CALLS);
     }
 
     proptest! {

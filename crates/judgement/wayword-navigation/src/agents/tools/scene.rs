@@ -1,7 +1,6 @@
 //! What the tool `observe` tells of a place: labels, captions or pictures of four views.
 
-use super::quoted;
-use crate::{error::WalkError, sight::AgentView};
+use crate::{error::WalkError, one_line::quoted, sight::AgentView};
 use std::sync::Arc;
 use wayword_core::{Heading, Image, Label, ModelError, ObjectId, View, ViewpointId};
 
@@ -34,71 +33,86 @@ pub(super) struct Scene {
     pub(super) lines: Vec<String>,
     /// Pictures, in the order of the lines.
     pub(super) pictures: Vec<Arc<Image>>,
-    /// The names of its things, nearest first where that is known, each once.
-    pub(super) names: Vec<String>,
-    /// Its objects by their numbers, from 1; empty where the agent is not to name one.
-    pub(super) objects: Vec<ObjectId>,
+    /// What is kept of it on the map.
+    pub(super) brief: String,
+    /// Its objects with their names, by their numbers from 1; empty where the agent is not to name one.
+    pub(super) objects: Vec<(ObjectId, String)>,
     /// How many things there are.
     pub(super) things: usize,
+    /// Views that nobody could describe.
+    pub(super) undescribed: usize,
 }
 
-/// Most things of a place that are told.
+/// Most things of a place that are told, and characters of all of them.
 const MOST_THINGS: usize = 40;
+const MOST_CHARS: usize = 2_000;
 /// Longest name, and longest caption of a view, characters.
 const MOST_NAME_CHARS: usize = 40;
-const MOST_CAPTION_CHARS: usize = 400;
+const MOST_CAPTION_CHARS: usize = 450;
+/// Names of things that are kept of a place, and characters that are kept of each caption.
+const KEPT_NAMES: usize = 6;
+const KEPT_CAPTION_CHARS: usize = 40;
 /// Sectors of 45 degrees, clockwise from ahead.
 const SECTORS: [&str; 8] =
     ["ahead", "ahead-right", "right", "behind-right", "behind", "behind-left", "left", "ahead-left"];
 
 /// The sector in which a direction lies, by its turn from ahead (radians, positive right).
-pub(super) fn sector(turn_rad: f64) -> usize {
+fn sector(turn_rad: f64) -> usize {
     (turn_rad.to_degrees() / 45.0).round().rem_euclid(8.0) as usize % SECTORS.len()
-}
-
-/// The words for a direction.
-pub(super) fn direction(turn_rad: f64) -> &'static str {
-    SECTORS[sector(turn_rad)]
 }
 
 /// Looks around a place along `heading`. Objects get numbers where the agent is to name one.
 pub(super) fn look(
     agent_view: &AgentView<'_>,
-    at: (&ViewpointId, Heading),
+    (here, heading): (&ViewpointId, Heading),
     looks: Looks<'_>,
     numbers_objects: bool,
 ) -> Result<Scene, WalkError> {
-    let (here, heading) = at;
-    let views = agent_view.views(here)?;
     match looks {
-        Looks::Labels => labelled(&views, heading, numbers_objects),
-        Looks::Pictures => pictured(&views, heading),
-        Looks::Captions(by) => captioned(&views, heading, by),
+        Looks::Labels => {
+            let (labels, room) = agent_view.labelled(here)?.ok_or_else(|| missing("labels"))?;
+            Ok(labelled(labels, room, heading, numbers_objects))
+        }
+        Looks::Pictures => pictured(&agent_view.views(here)?, heading),
+        Looks::Captions(by) => captioned(&agent_view.views(here)?, heading, by),
     }
 }
 
-fn labelled(views: &[View; 4], heading: Heading, numbers_objects: bool) -> Result<Scene, WalkError> {
-    let mut labels: Vec<&Label> = Vec::new();
-    let mut room = None;
-    for view in views {
-        let truth = view.ground_truth().ok_or_else(|| missing("labels"))?;
-        labels.extend(&truth.labels);
-        room = room.or(truth.room.as_deref());
-    }
+fn labelled(mut labels: Vec<Label>, room: Option<String>, heading: Heading, numbers_objects: bool) -> Scene {
     labels.sort_by(|a, b| near_m(a).total_cmp(&near_m(b)).then_with(|| a.object.cmp(&b.object)));
     let things = labels.len();
-    labels.truncate(MOST_THINGS);
-    let mut names: Vec<String> = Vec::new();
-    for label in &labels {
-        let name = quoted(&label.name, MOST_NAME_CHARS);
-        if !names.contains(&name) {
-            names.push(name);
+    // What is far is left out first.
+    let mut chars = 0;
+    let fits = |label: &Label| {
+        chars += label.name.chars().count().min(MOST_NAME_CHARS) + 22;
+        chars <= MOST_CHARS
+    };
+    let told = labels.iter().map(fits).take(MOST_THINGS).take_while(|fits| *fits).count();
+    labels.truncate(told);
+    let named: Vec<(Label, String)> = labels
+        .into_iter()
+        .map(|label| {
+            let name = quoted(&label.name, MOST_NAME_CHARS);
+            (label, name)
+        })
+        .collect();
+    let room = room.map(|room| quoted(&room, MOST_NAME_CHARS));
+    let lines = (0..SECTORS.len()).filter_map(|sector| line(sector, &named, heading, numbers_objects)).collect();
+    let brief = brief(room.as_deref(), named.iter().map(|(_, name)| name.as_str()));
+    let objects = named.into_iter().filter(|_| numbers_objects).map(|(label, name)| (label.object, name)).collect();
+    Scene { room, lines, brief, objects, things, ..Scene::default() }
+}
+
+/// The room and the first names, each once.
+fn brief<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> String {
+    let mut kept: Vec<&str> = Vec::new();
+    for name in names {
+        if kept.len() < KEPT_NAMES && !kept.contains(&name) {
+            kept.push(name);
         }
     }
-    let lines = (0..SECTORS.len()).filter_map(|sector| line(sector, &labels, heading, numbers_objects)).collect();
-    let objects = labels.iter().filter(|_| numbers_objects).map(|label| label.object.clone()).collect();
-    let room = room.map(|room| quoted(room, MOST_NAME_CHARS));
-    Ok(Scene { room, lines, pictures: Vec::new(), names, objects, things })
+    let parts: Vec<&str> = room.into_iter().chain(kept).collect();
+    if parts.is_empty() { "nothing with a name".to_owned() } else { parts.join(", ") }
 }
 
 /// How far away a labelled thing is; those of which it is not known come last.
@@ -106,19 +120,20 @@ fn near_m(label: &Label) -> f64 {
     label.distance_m.unwrap_or(f64::INFINITY)
 }
 
-/// The things of a sector, as "left: sofa (1.2 m), 2 chairs"; `None` where there is none.
-fn line(of: usize, labels: &[&Label], heading: Heading, numbers_objects: bool) -> Option<String> {
-    let mut told: Vec<(String, usize)> = Vec::new();
-    for (at, label) in labels.iter().enumerate().filter(|(_, label)| sector(heading.turn_to(label.heading)) == of) {
-        let name = quoted(&label.name, MOST_NAME_CHARS);
+/// The things of a sector, as "left: sofa (1.2 m), chair x2"; `None` where there is none. Of several with one name the
+/// nearest has its distance told. With numbers each stands by itself.
+fn line(of: usize, named: &[(Label, String)], heading: Heading, numbers_objects: bool) -> Option<String> {
+    let mut told: Vec<(&str, String, usize)> = Vec::new();
+    let here = named.iter().enumerate().filter(|(_, (label, _))| sector(heading.turn_to(label.heading)) == of);
+    for (at, (label, name)) in here {
         let far = label.distance_m.map_or(String::new(), |far_m| format!(" ({far_m:.1} m)"));
-        match told.iter_mut().find(|(other, _)| !numbers_objects && other.split(" (").next() == Some(&name)) {
-            Some((_, count)) => *count += 1,
-            None if numbers_objects => told.push((format!("[{}] {name}{far}", at + 1), 1)),
-            None => told.push((format!("{name}{far}"), 1)),
+        let number = if numbers_objects { format!("[{}] ", at + 1) } else { String::new() };
+        match told.iter_mut().find(|(other, ..)| !numbers_objects && other == name) {
+            Some((.., count)) => *count += 1,
+            None => told.push((name, format!("{number}{name}{far}"), 1)),
         }
     }
-    let words = |(name, count): (String, usize)| if count > 1 { format!("{name} x{count}") } else { name };
+    let words = |(_, words, count)| if count > 1 { format!("{words} x{count}") } else { words };
     let told: Vec<String> = told.into_iter().map(words).collect();
     (!told.is_empty()).then(|| format!("{}: {}", SECTORS[of], told.join(", ")))
 }
@@ -136,10 +151,9 @@ pub(super) fn clockwise(turn_rad: f64) -> f64 {
 }
 
 fn pictured(views: &[View; 4], heading: Heading) -> Result<Scene, WalkError> {
-    let mut scene = Scene::default();
+    let mut scene = Scene { brief: "you looked around".to_owned(), ..Scene::default() };
     for (turn_rad, view) in from_ahead(views, heading) {
-        let picture = view.image.clone().ok_or_else(|| missing("pictures"))?;
-        scene.pictures.push(picture);
+        scene.pictures.push(view.image.clone().ok_or_else(|| missing("pictures"))?);
         scene.lines.push(format!("picture {} looks {}", scene.pictures.len(), turned(turn_rad)));
     }
     Ok(scene)
@@ -147,20 +161,31 @@ fn pictured(views: &[View; 4], heading: Heading) -> Result<Scene, WalkError> {
 
 fn captioned(views: &[View; 4], heading: Heading, by: &dyn Describes) -> Result<Scene, WalkError> {
     let mut scene = Scene::default();
+    let mut kept = Vec::new();
     for (turn_rad, view) in from_ahead(views, heading) {
-        let caption = quoted(&by.describe(view)?, MOST_CAPTION_CHARS);
+        let caption = match by.describe(view) {
+            Ok(caption) => quoted(&caption, MOST_CAPTION_CHARS),
+            // One view that cannot be described, as when a filter refuses its picture, does not end the walk.
+            Err(ModelError::Failed { .. }) => {
+                scene.undescribed += 1;
+                "not known".to_owned()
+            }
+            Err(error) => return Err(error.into()),
+        };
+        kept.push(quoted(&caption, KEPT_CAPTION_CHARS));
         scene.lines.push(format!("{}: {caption}", turned(turn_rad)));
     }
+    scene.brief = kept.join(" / ");
     Ok(scene)
 }
 
 /// A turn from ahead in words and degrees.
 pub(super) fn turned(turn_rad: f64) -> String {
-    let deg = turn_rad.to_degrees().round();
+    let (words, deg) = (SECTORS[sector(turn_rad)], turn_rad.to_degrees().round());
     match deg {
-        0.0 => "ahead".to_owned(),
-        deg if deg > 0.0 => format!("{}, {deg} degrees right", direction(turn_rad)),
-        deg => format!("{}, {} degrees left", direction(turn_rad), -deg),
+        0.0 => words.to_owned(),
+        deg if deg > 0.0 => format!("{words}, {deg} degrees right"),
+        deg => format!("{words}, {} degrees left", -deg),
     }
 }
 
@@ -175,12 +200,58 @@ mod tests {
 
     #[test]
     fn directions_go_round_once() {
-        let words: Vec<&str> = [0.0, 44.0, 90.0, 179.0, -179.0, -90.0, -30.0, -20.0]
-            .into_iter()
-            .map(|deg: f64| direction(deg.to_radians()))
-            .collect();
-        assert_eq!(words, ["ahead", "ahead-right", "right", "behind", "behind", "left", "ahead-left", "ahead"]);
-        assert_eq!(turned(-0.5), "ahead-left, 29 degrees left");
-        assert_eq!(turned(0.0), "ahead");
+        let words: Vec<String> =
+            [0.0, 44.0, 90.0, 179.0, -90.0, -30.0].into_iter().map(|deg: f64| turned(deg.to_radians())).collect();
+        assert_eq!(
+            words,
+            [
+                "ahead",
+                "ahead-right, 44 degrees right",
+                "right, 90 degrees right",
+                "behind, 179 degrees right",
+                "left, 90 degrees left",
+                "ahead-left, 30 degrees left",
+            ]
+        );
+    }
+
+    fn label(name: &str, deg: f64, distance_m: Option<f64>) -> Label {
+        Label {
+            object: ObjectId::new(format!("{name}{deg}").chars().take(100).collect::<String>()).unwrap(),
+            name: name.to_owned(),
+            heading: Heading::new(f64::to_radians(deg)).unwrap(),
+            elevation_rad: 0.0,
+            box_px: None,
+            distance_m,
+            position: None,
+            colour: None,
+        }
+    }
+
+    #[test]
+    fn things_of_one_name_and_direction_are_counted_unless_they_have_numbers() {
+        let labels = vec![
+            label("chair (wooden)", 5.0, Some(2.0)),
+            label("chair", 0.0, Some(3.0)),
+            label("chair", 10.0, Some(1.0)),
+            label("lamp", 90.0, None),
+        ];
+        let scene = labelled(labels.clone(), Some("den".into()), Heading::NORTH, false);
+        assert_eq!(scene.lines, ["ahead: chair (1.0 m) x2, chair (wooden) (2.0 m)", "right: lamp"]);
+        assert_eq!((scene.brief.as_str(), scene.things), ("den, chair, chair (wooden), lamp", 4));
+        let scene = labelled(labels, None, Heading::NORTH, true);
+        assert_eq!(scene.lines[0], "ahead: [1] chair (1.0 m), [2] chair (wooden) (2.0 m), [3] chair (3.0 m)");
+        assert_eq!(scene.objects[2].1, "chair");
+    }
+
+    #[test]
+    fn a_place_with_many_things_is_told_in_few_words() {
+        let long = "a cupboard with a carved front and drawers behind two doors";
+        let labels =
+            (0..500).map(|at| label(&format!("{at} {long}"), f64::from(at % 360), Some(f64::from(at)))).collect();
+        let scene = labelled(labels, None, Heading::NORTH, true);
+        assert_eq!(scene.things, 500);
+        let chars: usize = scene.lines.iter().map(|line| line.chars().count()).sum();
+        assert!(chars <= MOST_CHARS && chars > MOST_CHARS / 2, "{chars}");
     }
 }

@@ -162,12 +162,12 @@ fn wrong(file: &Path, problem: &str) -> Error {
 /// What a walk of the agent by a language model may take.
 fn limits(own: toml::Value) -> Result<Limits, String> {
     let limits: Limits = own.try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
-    let are_sane = limits.max_hops <= 1000 && (1..=1000).contains(&limits.max_calls) && limits.memory <= 50;
+    let are_sane = limits.max_hops <= 1000 && (1..=1000).contains(&limits.max_calls) && limits.memory <= 12;
     let is_money = limits.max_usd.is_none_or(|usd| usd.is_finite() && usd > 0.0);
     if are_sane && is_money {
         return Ok(limits);
     }
-    Err("[tools]: max_hops must be at most 1000, max_calls from 1 to 1000, memory at most 50, and max_usd above 0"
+    Err("[tools]: max_hops must be at most 1000, max_calls from 1 to 1000, memory at most 12, and max_usd above 0"
         .to_owned())
 }
 

@@ -15,7 +15,7 @@ use crate::{
 };
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
-use wayword_core::{ModelError, Platform, View};
+use wayword_core::{ModelError, Platform, Request, View};
 use wayword_navigation::{
     AgentView,
     agents::{Describes, Looks, rehearse},
@@ -94,14 +94,15 @@ impl Estimate {
             let names_object = item.episode.target_object.is_some();
             for text in agents.iter().filter(|agent| agent.name() == TOOLS).flat_map(|agent| agent.texts(item)) {
                 let route = &item.episode.viewpoints;
-                for request in
-                    rehearse(&agent_view, &item.start, &text.text, names_object, (looks, tools.limits), route)?
-                {
+                let sight = (looks, tools.limits);
+                let asked = rehearse(&agent_view, &item.start, &text.text, names_object, sight, route)?;
+                for (at, request) in asked.iter().enumerate() {
                     let before = load.tokens_in;
-                    let words: Vec<&str> = request.messages.iter().map(|message| message.text.as_str()).collect();
-                    load.call(&words.concat(), REPLY_TOKENS);
+                    load.call(&words_of(request), REPLY_TOKENS);
                     self.most_tokens_in = self.most_tokens_in.max(load.tokens_in - before);
-                    load.tokens_in += if looks_at_pictures { VIEWS * picture_tokens(tools.picture_px) } else { 0 };
+                    // Before the first look it has no pictures.
+                    let is_shown = looks_at_pictures && at > 0;
+                    load.tokens_in += if is_shown { VIEWS * picture_tokens(tools.picture_px) } else { 0 };
                 }
                 rehearsed += 1;
             }
@@ -109,6 +110,12 @@ impl Estimate {
         let scaled = |of: u64| of * self.walks as u64 / rehearsed.max(1);
         Ok(Load { calls: scaled(load.calls), tokens_in: scaled(load.tokens_in), tokens_out: scaled(load.tokens_out) })
     }
+}
+
+/// All that a request says, tools included.
+fn words_of(request: &Request) -> String {
+    let messages = request.messages.iter().map(|message| message.text.as_str());
+    messages.chain(request.tools.iter().flat_map(|tool| [tool.name, tool.does, tool.arguments])).collect()
 }
 
 /// How many texts of an item the agent by a language model walks by.
@@ -137,7 +144,7 @@ impl fmt::Display for Estimate {
         if self.walks > 0 {
             write!(
                 f,
-                ", {} by {TOOLS}; its largest prompt has about {} tokens",
+                ", {} by {TOOLS}; its largest prompt has about {} tokens without pictures",
                 count(self.walks, "walk"),
                 self.most_tokens_in
             )?;

@@ -152,7 +152,7 @@ impl Kept {
             seed: settings.seed,
             prior: prior(args)?,
             reader_threshold: thresholds.of_reader,
-            tools: tools(args, settings, thresholds.of_tools)?,
+            tools: tools(args, settings, thresholds.of_tools),
             parameters: thresholds.of_phrases,
             inputs,
         })
@@ -196,28 +196,35 @@ fn prior(args: &Compare) -> Result<Option<String>, Error> {
     Ok(knows_map.then(|| args.prior.unwrap_or_default().to_string()))
 }
 
-/// The agent by a language model; `None` where it was not asked for.
-fn tools(args: &Compare, settings: &Settings, limits: Limits) -> Result<Option<ToolsKept>, Error> {
+/// Refuses flags of the agent by a language model without that agent, and the agent without a model.
+///
+/// # Errors
+/// When they do not fit together.
+pub(super) fn refuse_flags_of_tools(args: &Compare) -> Result<(), Error> {
     let is_asked = args.agents.iter().any(|agent| agent == TOOLS);
-    let flags =
+    let given =
         [("--llm", args.llm.is_some()), ("--see", args.see.is_some()), ("--picture-px", args.picture_px.is_some())];
-    match (&args.llm, flags.into_iter().find(|(_, is_given)| *is_given)) {
-        (_, Some((flag, _))) if !is_asked => Err(Error::usage(
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) if !is_asked => Err(Error::usage(
             format!("{flag} has no effect: it is for the agent {TOOLS}"),
             format!("add {TOOLS} to --agents, or leave {flag} out"),
         )),
-        (None, _) if is_asked => Err(Error::usage(
+        _ if is_asked && args.llm.is_none() => Err(Error::usage(
             format!("--agents {TOOLS}: this agent needs a language model"),
             "name one, as in --llm openai/gpt-4.1-mini",
         )),
-        (Some(llm), _) => Ok(Some(ToolsKept {
-            llm: llm.clone(),
-            see: args.see.clone().unwrap_or_else(|| LABELS.to_owned()),
-            picture_px: settings.roles.picture_px,
-            limits,
-        })),
-        (None, _) => Ok(None),
+        _ => Ok(()),
     }
+}
+
+/// The agent by a language model; `None` where it was not asked for.
+fn tools(args: &Compare, settings: &Settings, limits: Limits) -> Option<ToolsKept> {
+    Some(ToolsKept {
+        llm: args.llm.clone()?,
+        see: args.see.clone().unwrap_or_else(|| LABELS.to_owned()),
+        picture_px: settings.roles.picture_px,
+        limits,
+    })
 }
 
 /// The swaps that were asked for. `none` cannot be combined.

@@ -120,10 +120,11 @@ impl Crew<'_> {
     fn by_tools<'i>(&self, agent: &Agent, item: &'i Item) -> Result<Vec<(&'i Text, Walked)>, WalkError> {
         let Some(toolbox) = self.toolbox else { return Ok(Vec::new()) };
         let (grounder, scene) = (self.grounders.views.as_ref(), &item.start.scene);
-        let agent_view = AgentView::new(self.platform, grounder, toolbox.needs_pictures(), scene)?;
+        let agent_view =
+            AgentView::new(self.platform, grounder, toolbox.needs_pictures() || self.grounders.need_pictures, scene)?;
         let names_object = item.episode.target_object.is_some();
         let walk = |text: &&'i Text| {
-            walk_by_tools(&agent_view, &item.start, &text.text, names_object, toolbox.tools())
+            walk_by_tools(&agent_view, &item.start, &text.text, names_object, toolbox.walker())
                 .map(|walked| (*text, walked))
         };
         let texts: Vec<&Text> = agent.texts(item).collect();

@@ -35,7 +35,7 @@ use outputs::Gathered;
 use score::Judge;
 use sets::Item;
 use std::{fs, path::Path};
-use tools::{Mute, Toolbox};
+use tools::{HeldBack, Toolbox};
 use wayword_core::{Failure, ModelError, Recent};
 use wayword_navigation::{
     WalkError,
@@ -78,6 +78,7 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
         );
         return Err(Error::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
     }
+    kept::refuse_flags_of_tools(args)?;
     let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
     let kept = Kept::of(args, &job.settings)?;
     let models = Models::of(&job)?;
@@ -100,6 +101,9 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
         output.data(&estimate, &estimate);
         return Ok(Exit::Done);
     }
+    if kept.tools.is_some() {
+        tools::warn_of_long_texts(&items, output);
+    }
     let grounders = Grounders::open(&kept, output)?;
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
     run::refuse_file(&args.out)?;
@@ -112,7 +116,7 @@ pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
     if calls.is_some() {
         run::keep_id(&args.out, &id)?;
     }
-    let toolbox = Toolbox::open(&kept, &job.settings, (calls.as_ref(), items.len()), platform.as_ref())?;
+    let toolbox = Toolbox::open(&kept, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
     let surveys = Recent::new(SCENES_KEPT);
     let crew = Crew {
         platform: platform.as_ref(),
@@ -189,7 +193,7 @@ fn walk_all(
     bar.reset_eta();
     let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
     let mut losses = Losses::default();
-    let mut mute = Mute::default();
+    let mut held_back = HeldBack::default();
     let workers = calls.map_or_else(cores, Calls::workers);
     in_order(
         &left,
@@ -201,8 +205,7 @@ fn walk_all(
             match made {
                 Ok(made) => {
                     walked += 1;
-                    mute.count(&made)?;
-                    made.iter().try_for_each(|walk| walks.append(walk))?;
+                    held_back.take(made)?.iter().flatten().try_for_each(|walk| walks.append(walk))?;
                 }
                 // The service is gone: the other items would wait for it too.
                 Err(error) if is_gone => return Err(error.into()),
@@ -221,6 +224,7 @@ fn walk_all(
             interrupt::check().map(|()| true)
         },
     )?;
+    held_back.rest().iter().flatten().try_for_each(|walk| walks.append(walk))?;
     walks.sync()?;
     bar.finish_and_clear();
     Ok(failed)

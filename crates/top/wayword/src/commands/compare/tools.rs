@@ -1,10 +1,15 @@
 //! The agent by a language model: who decides, how it sees, and what its walks take.
 
-use super::kept::{Kept, ToolsKept};
+use super::{
+    kept::{Kept, ToolsKept},
+    sets::Item,
+};
 use crate::{
     calls::Calls,
     cli::PICTURES,
+    count::count,
     error::Error,
+    output::Output,
     plan::Models,
     settings::{LABELS, RULES, Roles, Settings},
     team::Team,
@@ -12,14 +17,15 @@ use crate::{
 use std::sync::Arc;
 use wayword_core::{LanguageModel, ModelError, Platform, View};
 use wayword_navigation::{
-    agents::{Describes, Limits, Looks, Tools},
-    walk::{Useless, Walk},
+    agents::{Describes, Limits, Looks, MOST_TEXT_CHARS, ModelWalker},
+    walk::Walk,
 };
 use wayword_synthesis::observe::talk_about;
 
 /// Who walks by tools, and with what.
 pub(super) struct Toolbox {
     pub(super) model: Arc<dyn LanguageModel>,
+    price: Option<Box<dyn Fn(u64, u64) -> f64 + Send + Sync>>,
     sight: Sight,
     limits: Limits,
     seed: u64,
@@ -34,7 +40,7 @@ enum Sight {
     Captions(Captions),
 }
 
-/// The captions that a run would give the views, so that both share the answers in the ledger.
+/// Captions as a run gives them, of views by the compass.
 struct Captions(Box<Team>);
 
 impl Toolbox {
@@ -45,12 +51,16 @@ impl Toolbox {
     pub(super) fn open(
         kept: &Kept,
         settings: &Settings,
-        (calls, items): (Option<&Calls>, usize),
+        (calls, models, items): (Option<&Calls>, &Models<'_>, usize),
         platform: &dyn Platform,
     ) -> Result<Option<Self>, Error> {
         let Some((tools, calls)) = kept.tools.as_ref().zip(calls) else { return Ok(None) };
         Ok(Some(Self {
             model: calls.model(&tools.llm)?,
+            price: models
+                .price(&tools.llm)
+                .cloned()
+                .map(|price| Box::new(move |tokens_in, tokens_out| price.usd(tokens_in, tokens_out)) as _),
             sight: Sight::of(tools, settings, calls, platform)?,
             limits: tools.limits,
             seed: kept.seed,
@@ -59,8 +69,9 @@ impl Toolbox {
     }
 
     /// The agent as it walks.
-    pub(super) fn tools(&self) -> Tools<'_> {
-        Tools { model: self.model.as_ref(), looks: self.sight.looks(), limits: self.limits, seed: self.seed }
+    pub(super) fn walker(&self) -> ModelWalker<'_> {
+        let (model, price, looks) = (self.model.as_ref(), self.price.as_deref(), self.sight.looks());
+        ModelWalker { model, price, looks, limits: self.limits, seed: self.seed }
     }
 
     /// Whether anybody looks at pictures.
@@ -116,34 +127,57 @@ pub(super) fn refuse_unknown_price(kept: &Kept, models: &Models<'_>) -> Result<(
     }
 }
 
-/// Counts walks without a single reply that calls a tool. The first ones of a command say whether the model can do this at
-/// all.
+/// Holds back the first walks of a command until one of the model's replies was of use. A model that cannot call tools
+/// at all leaves no walks behind.
 #[derive(Debug, Default)]
-pub(super) struct Mute {
+pub(super) struct HeldBack {
+    items: Vec<Vec<Walk>>,
     walks: usize,
-    speaks: bool,
+    has_spoken: bool,
 }
 
 /// Walks without such a reply after which the command gives up, where there was none with one.
 const FRUITLESS_WALKS: usize = 20;
 
-impl Mute {
-    /// Counts the walks of an item.
+impl HeldBack {
+    /// Takes the walks of an item. Gives those that can be kept.
     ///
     /// # Errors
-    /// When all walks so far were mute, and they are enough.
-    pub(super) fn count(&mut self, walks: &[Walk]) -> Result<(), Error> {
-        for effort in walks.iter().filter_map(|walk| walk.effort.as_ref()) {
-            let Useless { no_call, no_way, idle, failed } = effort.useless;
-            self.speaks |= effort.calls > no_call + no_way + idle + failed;
-            self.walks += 1;
+    /// When no reply so far was of use, and there were enough walks.
+    pub(super) fn take(&mut self, walks: Vec<Walk>) -> Result<Vec<Vec<Walk>>, Error> {
+        let efforts = || walks.iter().filter_map(|walk| walk.effort.as_ref());
+        self.has_spoken |= efforts().next().is_none() || efforts().any(|effort| effort.calls > effort.useless.sum());
+        self.walks += efforts().count();
+        let last = efforts().filter_map(|effort| effort.last_useless.clone()).next_back();
+        self.items.push(walks);
+        if self.has_spoken {
+            return Ok(std::mem::take(&mut self.items));
         }
-        if self.speaks || self.walks < FRUITLESS_WALKS {
-            return Ok(());
+        if self.walks < FRUITLESS_WALKS {
+            return Ok(Vec::new());
         }
         Err(Error::usage(
-            format!("--llm: none of the first {} walks had a reply that could be used", self.walks),
-            "`wayword ledger list` shows the replies; docs/AGENTS.md says which the agent reads",
+            format!(
+                "--llm: none of the first {} walks had a reply of use; the last one: {}",
+                self.walks,
+                last.unwrap_or_default()
+            ),
+            "`wayword ledger show` has the replies, and docs/AGENTS.md says which are read",
         ))
+    }
+
+    /// The walks that are still held back, of a command with few walks.
+    pub(super) fn rest(self) -> Vec<Vec<Walk>> {
+        self.items
+    }
+}
+
+/// Tells of texts that are longer than the model is told.
+pub(super) fn warn_of_long_texts(items: &[Item], output: &Output) {
+    let texts = || items.iter().flat_map(|item| &item.texts).map(|text| text.text.chars().count());
+    let long = texts().filter(|chars| *chars > MOST_TEXT_CHARS).count();
+    if long > 0 {
+        let texts = count(long, "text");
+        output.say(format_args!("warning: of {texts} the model is told the first {MOST_TEXT_CHARS} characters"));
     }
 }

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fmt};
 use wayword_metrics::{Estimate, McNemar, Metric};
 use wayword_navigation::{
-    comparison::{AgentKind, Comparison, EMPTY, Listening, Row, Swapped, Took},
+    comparison::{AgentKind, Comparison, EMPTY, Efforts, Listening, Row, Swapped},
     swap::Swap,
     walk::{End, Useless},
 };
@@ -150,39 +150,49 @@ pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
     }))
 }
 
-/// Columns of what walks took.
-pub(super) const BESIDE_TOOK: [&str; 7] =
+/// Columns of what walks effort.
+pub(super) const BESIDE_EFFORTS: [&str; 7] =
     ["calls", "tokens in", "tokens out", "US$", "hops", "seconds", "largest prompt"];
 /// Columns of what went wrong in walks.
-pub(super) const BESIDE_TROUBLE: [&str; 7] =
-    ["walks", "no call", "no such way", "looks twice", "refused or empty", "stops at once", "ended by a limit"];
+pub(super) const BESIDE_TROUBLE: [&str; 8] = [
+    "walks",
+    "no call",
+    "no such way",
+    "looks twice",
+    "refused or empty",
+    "views not described",
+    "stops at once",
+    "ended by a limit",
+];
 
 /// What the walks of agents by a language model took, on average.
-pub(super) fn took(comparison: &Comparison) -> Vec<Line<'_>> {
-    of_took(comparison, |took| {
-        let means = [&took.calls, &took.tokens_in, &took.tokens_out].map(|estimate| plain(estimate, 1));
-        let usd = took.usd.as_ref().map_or_else(|| "-".to_owned(), |usd| plain(usd, 4));
-        let rest = [plain(&took.hops, 1), plain(&took.seconds, 1), took.most_tokens_in.to_string()];
+pub(super) fn efforts(comparison: &Comparison) -> Vec<Line<'_>> {
+    of_efforts(comparison, |effort| {
+        let means = [&effort.calls, &effort.tokens_in, &effort.tokens_out].map(|estimate| plain(estimate, 1));
+        let usd = effort.usd.as_ref().map_or_else(|| "-".to_owned(), |usd| plain(usd, 4));
+        let rest = [plain(&effort.hops, 1), plain(&effort.seconds, 1), effort.most_tokens_in.to_string()];
         means.into_iter().chain([usd]).chain(rest).collect()
     })
 }
 
 /// What went wrong in those walks: numbers of replies, then of walks.
 pub(super) fn trouble(comparison: &Comparison) -> Vec<Line<'_>> {
-    of_took(comparison, |took| {
-        let Useless { no_call, no_way, idle, failed } = took.useless;
-        let by_a_limit: usize = took
+    of_efforts(comparison, |effort| {
+        let Useless { no_call, no_way, idle, failed } = effort.useless;
+        let by_a_limit: usize = effort
             .ended
             .iter()
             .filter(|(end, _)| !matches!(end, End::Stopped | End::DeadEnd))
             .map(|(_, walks)| walks)
             .sum();
-        [took.walks, no_call, no_way, idle, failed, took.at_once, by_a_limit].map(|count| count.to_string()).to_vec()
+        [effort.walks, no_call, no_way, idle, failed, effort.undescribed, effort.at_once, by_a_limit]
+            .map(|count| count.to_string())
+            .to_vec()
     })
 }
 
-fn of_took(comparison: &Comparison, beside: impl Fn(&Took) -> Vec<String>) -> Vec<Line<'_>> {
-    let line = |row: &'_ Row| Some(of_row(comparison, row, &NONE, beside(row.took.as_ref()?)));
+fn of_efforts(comparison: &Comparison, beside: impl Fn(&Efforts) -> Vec<String>) -> Vec<Line<'_>> {
+    let line = |row: &'_ Row| Some(of_row(comparison, row, &NONE, beside(row.effort.as_ref()?)));
     opened(comparison.rows.iter().filter_map(line))
 }
 

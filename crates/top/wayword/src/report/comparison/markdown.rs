@@ -2,8 +2,8 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_SWAPS, BESIDE_TOOK, BESIDE_TROUBLE, Line, SHOWN, differences, heading, name, rows,
-        swaps, took, trouble,
+        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, Line, SHOWN, differences, efforts, heading,
+        name, rows, swaps, trouble,
     },
     notes,
 };
@@ -31,10 +31,10 @@ pub fn markdown(comparison: &Comparison) -> String {
         add(&mut page, format_args!("\n## Loss by swap of set {first}\n\n"));
         table(&mut page, "Swap", &lost, &SHOWN, &BESIDE_SWAPS);
     }
-    let took = took(comparison);
-    if !took.is_empty() {
+    let efforts = efforts(comparison);
+    if !efforts.is_empty() {
         page.push_str("\n## What a walk by a language model took\n\n");
-        table(&mut page, "Instructions", &took, &[], &BESIDE_TOOK);
+        table(&mut page, "Instructions", &efforts, &[], &BESIDE_EFFORTS);
         page.push_str("\n## What went wrong in it\n\n");
         table(&mut page, "Instructions", &trouble(comparison), &[], &BESIDE_TROUBLE);
     }

@@ -180,13 +180,14 @@ fn readers(comparison: &Comparison) -> Vec<String> {
 fn by_tools(llm: &str, see: &str) -> String {
     let sees = match see {
         "labels" => {
-            "It is told labels of what is around it and the name of the room: ground truth, not perception".to_owned()
+            "It is told the room, and labels of what is around it with their distances: ground truth, not perception"
+                .to_owned()
         }
         "pictures" => "It is shown four pictures of what is around it".to_owned(),
         see => format!("It is told what {} says of four pictures around it", name(see)),
     };
     format!(
-        "{TOOLS} is {}, which looks around and steps by calling tools. {sees}. Its calls and tokens are means over walks; \"ended by a limit\" counts walks that ended because of the most hops, calls or money, in circles, or after replies of no use. All walks are scored as they stand.",
+        "{TOOLS} is {}, which calls tools to look around, to step and to stop. {sees}. Replies of no use are counted over all walks; \"ended by a limit\" counts walks that ended at the most hops, calls or money, in circles, or after replies of no use. All walks are scored as they stand.",
         name(llm)
     )
 }

@@ -2,8 +2,8 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_SWAPS, BESIDE_TOOK, BESIDE_TROUBLE, Figure, Line, READS_NOTHING, SHOWN, differences,
-        heading, name, rows, swaps, took, trouble,
+        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, Figure, Line, READS_NOTHING, SHOWN,
+        differences, efforts, heading, name, rows, swaps, trouble,
     },
     forest::{Forest, Plot},
     notes,
@@ -23,7 +23,7 @@ pub(in super::super) struct PageView {
     notes: Vec<String>,
     table: TableView,
     /// What walks by a language model took, and what went wrong in them; empty without such an agent.
-    took: Vec<TableView>,
+    efforts: Vec<TableView>,
     forests: Vec<Forest>,
     /// Titles of the folded tables, with the tables.
     folded: Vec<(String, TableView)>,
@@ -71,10 +71,10 @@ impl PageView {
             sets: comparison.sets.iter().map(notes::set).collect(),
             notes: notes::notes(comparison),
             table: TableView::new("Instructions", &table, &SHOWN, vec![]),
-            took: [(took(comparison), BESIDE_TOOK), (trouble(comparison), BESIDE_TROUBLE)]
+            efforts: [(efforts(comparison), BESIDE_EFFORTS.to_vec()), (trouble(comparison), BESIDE_TROUBLE.to_vec())]
                 .into_iter()
                 .filter(|(lines, _)| !lines.is_empty())
-                .map(|(lines, beside)| TableView::new("Instructions", &lines, &[], beside.to_vec()))
+                .map(|(lines, beside)| TableView::new("Instructions", &lines, &[], beside))
                 .collect(),
             forests: forests(&first, &table, &less, &lost),
             folded,

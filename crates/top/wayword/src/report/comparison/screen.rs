@@ -2,8 +2,8 @@
 
 use super::{
     figures::{
-        BESIDE_DIFFERENCES, BESIDE_SWAPS, BESIDE_TOOK, BESIDE_TROUBLE, Line, SHOWN, differences, heading, name, rows,
-        swaps, took, trouble,
+        BESIDE_DIFFERENCES, BESIDE_EFFORTS, BESIDE_SWAPS, BESIDE_TROUBLE, Line, SHOWN, differences, efforts, heading,
+        name, rows, swaps, trouble,
     },
     notes,
 };
@@ -25,9 +25,9 @@ pub fn screen(comparison: &Comparison) -> String {
     if !lost.is_empty() {
         table(&mut text, &format!("loss by swap of set {first}"), &lost, &SHOWN, &BESIDE_SWAPS);
     }
-    let took = took(comparison);
-    if !took.is_empty() {
-        table(&mut text, "what a walk took", &took, &[], &BESIDE_TOOK);
+    let efforts = efforts(comparison);
+    if !efforts.is_empty() {
+        table(&mut text, "what a walk took", &efforts, &[], &BESIDE_EFFORTS);
         table(&mut text, "what went wrong", &trouble(comparison), &[], &BESIDE_TROUBLE);
     }
     let sets = comparison.sets.iter().map(notes::set);

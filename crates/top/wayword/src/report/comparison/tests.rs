@@ -5,7 +5,7 @@ use crate::report::replay::tests::{Town, replay};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{Estimate, McNemar, Metric, Rule};
 use wayword_navigation::{
-    comparison::{About, AgentKind, Difference, Listening, Row, Set, Swapped, Took},
+    comparison::{About, AgentKind, Difference, Efforts, Listening, Row, Set, Swapped},
     swap::Swap,
     walk::{End, Useless},
 };
@@ -41,7 +41,7 @@ fn row(agent: &str, kind: AgentKind, set: Option<&str>, sr: f64, less: Option<f6
         set: set.map(str::to_owned),
         figures: figures(sr, 0.021),
         against_first,
-        took: None,
+        effort: None,
     }
 }
 
@@ -109,7 +109,7 @@ fn comparison() -> Comparison {
 fn with_tools(name: &str) -> Comparison {
     let mut comparison = comparison();
     comparison.about.tools = Some((name.into(), "labels".into()));
-    let took = |calls: f64| Took {
+    let took = |calls: f64| Efforts {
         walks: 1_504,
         calls: estimate(calls, 0.4),
         hops: estimate(5.2, 0.1),
@@ -118,13 +118,14 @@ fn with_tools(name: &str) -> Comparison {
         usd: Some(estimate(0.0123, 0.0004)),
         seconds: estimate(9.5, 0.5),
         most_tokens_in: 1_234,
+        undescribed: 2,
         useless: Useless { no_call: 7, no_way: 5, idle: 3, failed: 1 },
         at_once: 12,
         ended: BTreeMap::from([(End::Stopped, 1_400), (End::Cap, 90), (End::Circles, 14)]),
     };
     for (set, sr, calls) in [("original", 0.4, 8.0), ("central", 0.5, 7.5)] {
         let row = row("tools", AgentKind::Agent, Some(set), sr, None);
-        comparison.rows.push(Row { took: Some(took(calls)), ..row });
+        comparison.rows.push(Row { effort: Some(took(calls)), ..row });
     }
     comparison
 }

@@ -135,7 +135,7 @@ impl Replay<'_> {
             End::Calls => "it made the most calls that it may",
             End::Money => "its model cost what a walk may cost",
             End::Circles => "it walked in circles",
-            End::Useless => "its model gave no reply of use",
+            End::NoUse => "its model gave no reply of use",
         };
         let off = score.navigation_error_m.map_or_else(
             || "its end has no connection to the goal".to_owned(),

@@ -8,7 +8,7 @@ use wayword_metrics::Estimate;
 
 /// What the walks of a row took. Means are over items, with intervals clustered by path; counts are over walks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Took {
+pub struct Efforts {
     /// Number of walks.
     pub walks: usize,
     /// Calls of the model in a walk.
@@ -28,6 +28,9 @@ pub struct Took {
     pub most_tokens_in: u64,
     /// Replies of no use.
     pub useless: Useless,
+    /// Views that nobody could describe.
+    #[serde(default)]
+    pub undescribed: usize,
     /// Walks that stopped at their start.
     pub at_once: usize,
     /// Walks by why they ended.
@@ -36,13 +39,13 @@ pub struct Took {
 
 /// What one walk took.
 #[derive(Debug, Clone)]
-pub(super) struct Taken {
+pub(super) struct OfWalk {
     effort: Effort,
     hops: usize,
     end: End,
 }
 
-impl Taken {
+impl OfWalk {
     /// What a walk took, where a language model decided.
     pub(super) fn of(walk: &Walk) -> Option<Self> {
         let hops = walk.steps.len().saturating_sub(1);
@@ -50,15 +53,15 @@ impl Taken {
     }
 }
 
-impl Took {
+impl Efforts {
     /// What the walks of an agent by a set took. `estimate` gives the mean of items' figures with its interval.
     pub(super) fn of(
         results: &Results,
         (agent, set): (&str, &str),
         estimate: impl Fn(BTreeMap<&str, f64>) -> Option<Estimate>,
     ) -> Option<Self> {
-        let by_item = results.taken(agent, set)?;
-        let mean = |figure: &dyn Fn(&Taken) -> Option<f64>| {
+        let by_item = results.efforts(agent, set)?;
+        let mean = |figure: &dyn Fn(&OfWalk) -> Option<f64>| {
             let mut means = BTreeMap::new();
             for (item, texts) in by_item {
                 let figures = texts.values().map(figure).collect::<Option<Vec<f64>>>()?;
@@ -68,24 +71,25 @@ impl Took {
         };
         let all = || by_item.values().flat_map(BTreeMap::values);
         let mut ended = BTreeMap::new();
-        all().for_each(|taken| *ended.entry(taken.end).or_default() += 1);
-        let sum = |of: fn(&Useless) -> usize| all().map(|taken| of(&taken.effort.useless)).sum();
+        all().for_each(|walk| *ended.entry(walk.end).or_default() += 1);
+        let sum = |of: fn(&Useless) -> usize| all().map(|walk| of(&walk.effort.useless)).sum();
         Some(Self {
             walks: all().count(),
-            calls: mean(&|taken| Some(taken.effort.calls as f64))?,
-            hops: mean(&|taken| Some(taken.hops as f64))?,
-            tokens_in: mean(&|taken| Some(taken.effort.tokens_in as f64))?,
-            tokens_out: mean(&|taken| Some(taken.effort.tokens_out as f64))?,
-            usd: mean(&|taken| taken.effort.usd),
-            seconds: mean(&|taken| Some(taken.effort.seconds))?,
-            most_tokens_in: all().map(|taken| taken.effort.most_tokens_in).max().unwrap_or_default(),
+            calls: mean(&|walk| Some(walk.effort.calls as f64))?,
+            hops: mean(&|walk| Some(walk.hops as f64))?,
+            tokens_in: mean(&|walk| Some(walk.effort.tokens_in as f64))?,
+            tokens_out: mean(&|walk| Some(walk.effort.tokens_out as f64))?,
+            usd: mean(&|walk| walk.effort.usd),
+            seconds: mean(&|walk| Some(walk.effort.seconds))?,
+            most_tokens_in: all().map(|walk| walk.effort.most_tokens_in).max().unwrap_or_default(),
             useless: Useless {
                 no_call: sum(|useless| useless.no_call),
                 no_way: sum(|useless| useless.no_way),
                 idle: sum(|useless| useless.idle),
                 failed: sum(|useless| useless.failed),
             },
-            at_once: all().filter(|taken| taken.hops == 0 && taken.end == End::Stopped).count(),
+            undescribed: all().map(|walk| walk.effort.undescribed).sum(),
+            at_once: all().filter(|walk| walk.hops == 0 && walk.end == End::Stopped).count(),
             ended,
         })
     }

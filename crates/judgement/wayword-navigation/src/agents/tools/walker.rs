@@ -1,0 +1,307 @@
+//! A walk in progress: asks the model, does what it calls, and keeps count.
+
+use super::{
+    Looks, ModelWalker, Start, Walked, choice,
+    memory::Memory,
+    prompt::{Sees, State, Way, request},
+    reply::{Act, Called, Pointed, read},
+    scene::{Scene, clockwise, look},
+};
+use crate::{
+    error::WalkError,
+    one_line::quoted,
+    sight::AgentView,
+    walk::{Choice, Effort, End, Step, Told},
+};
+use std::collections::BTreeMap;
+use wayword_core::{Heading, ModelError, ObjectId, Reply, Request, ViewpointId};
+use wayword_follower::online::Hop;
+use wayword_language::lexicon::{agree, normal};
+
+/// Replies of no use in a row that end a walk.
+const MOST_USELESS: usize = 3;
+/// How often a walk may take one hop in one direction.
+const MOST_TIMES_A_HOP: usize = 3;
+/// Characters of a reply of no use that are kept.
+const KEPT_CHARS: usize = 200;
+
+pub(super) struct Walker<'a> {
+    agent_view: &'a AgentView<'a>,
+    text: &'a str,
+    names_object: bool,
+    by: ModelWalker<'a>,
+    memory: Memory,
+    here: ViewpointId,
+    /// The number of the place where it stands.
+    number: usize,
+    heading: Heading,
+    /// What was seen where it stands, if it looked.
+    scene: Option<Scene>,
+    steps: Vec<Step>,
+    hopped: BTreeMap<(ViewpointId, ViewpointId), usize>,
+    pub(super) effort: Effort,
+    /// What was wrong with the last reply, and with how many in a row something was.
+    trouble: Option<String>,
+    useless: usize,
+    /// Why the service gave no answer, the last time that it gave none.
+    failure: Option<ModelError>,
+    /// Why it stops, and at which object.
+    stop: (Option<String>, Option<ObjectId>),
+}
+
+impl<'a> Walker<'a> {
+    pub(super) fn new(
+        agent_view: &'a AgentView<'a>,
+        start: &Start,
+        text: &'a str,
+        names_object: bool,
+        by: ModelWalker<'a>,
+    ) -> Self {
+        let memory = Memory::new(agent_view.position(&start.viewpoint), start.heading, by.limits.memory);
+        let mut walker = Self {
+            agent_view,
+            text,
+            names_object,
+            by,
+            memory,
+            here: start.viewpoint.clone(),
+            number: 0,
+            heading: start.heading,
+            scene: None,
+            steps: Vec::new(),
+            hopped: BTreeMap::new(),
+            effort: Effort { usd: Some(0.0), ..Effort::default() },
+            trouble: None,
+            useless: 0,
+            failure: None,
+            stop: (None, None),
+        };
+        walker.arrive(start.viewpoint.clone(), start.heading);
+        walker
+    }
+
+    /// The ways out of where it stands, clockwise from ahead, and the nodes that they lead to.
+    pub(super) fn ways(&self) -> Vec<(ViewpointId, Hop)> {
+        let (ways, hops) = self.agent_view.ways(&self.here, self.heading);
+        let mut ways: Vec<_> = ways.into_iter().zip(hops).collect();
+        ways.sort_by(|(_, a), (_, b)| clockwise(a.turn_rad).total_cmp(&clockwise(b.turn_rad)));
+        ways
+    }
+
+    /// Comes to a place, looking along a heading.
+    fn arrive(&mut self, at: ViewpointId, heading: Heading) {
+        let (ways, _) = self.agent_view.ways(&at, heading);
+        let ways = ways.into_iter().map(|to| (to.clone(), self.agent_view.position(&to))).collect();
+        self.number = self.memory.reach(&at, self.agent_view.position(&at), ways);
+        (self.here, self.heading, self.scene) = (at, heading, None);
+    }
+
+    /// Why it may not go on, where it may not.
+    pub(super) fn spent(&self) -> Option<End> {
+        let limits = &self.by.limits;
+        // What nobody knows the price of may have passed the limit already.
+        let is_spent = limits.max_usd.is_some_and(|most| self.effort.usd.is_none_or(|usd| usd >= most));
+        match () {
+            () if self.useless >= MOST_USELESS => Some(End::NoUse),
+            () if self.effort.calls >= limits.max_calls => Some(End::Calls),
+            () if is_spent => Some(End::Money),
+            () => None,
+        }
+    }
+
+    /// What the model is asked where it stands.
+    pub(super) fn request(&self) -> Result<Request, WalkError> {
+        let way = |(to, hop): &(ViewpointId, Hop)| {
+            Way::new(hop, self.memory.number(to), &self.memory.spot(self.agent_view.position(to)))
+        };
+        let ways: Vec<Way> = self.ways().iter().map(way).collect();
+        request(&State {
+            text: self.text,
+            sees: match self.by.looks {
+                Looks::Labels => Sees::Labels,
+                Looks::Pictures => Sees::Pictures,
+                Looks::Captions(_) => Sees::Captions,
+            },
+            names_object: self.names_object,
+            memory: &self.memory,
+            here: (self.number, self.heading),
+            ways: &ways,
+            scene: self.scene.as_ref(),
+            limits: &self.by.limits,
+            calls: self.effort.calls,
+            hops: self.steps.len(),
+            trouble: self.trouble.as_deref(),
+            seed: self.by.seed,
+        })
+    }
+
+    /// Asks the model. `None` where its reply is of no use.
+    pub(super) fn ask(&mut self) -> Result<Option<Vec<Called>>, WalkError> {
+        let asked = self.request()?;
+        self.effort.calls += 1;
+        let reply = match self.by.model.complete(&[asked]).pop() {
+            Some(Ok(reply)) => reply,
+            // The service answered this prompt with nothing that can be used. Another prompt may do better.
+            Some(Err(error @ ModelError::Failed { .. })) => {
+                self.effort.useless.failed += 1;
+                self.refuse("it was empty or refused".to_owned(), &error.to_string());
+                self.failure = Some(error);
+                return Ok(None);
+            }
+            Some(Err(error)) => return Err(error.into()),
+            None => return Err(self.gave_none().into()),
+        };
+        self.count(&reply);
+        let calls = read(&reply.text);
+        if calls.is_empty() {
+            self.effort.useless.no_call += 1;
+            self.refuse("it called no tool".to_owned(), &reply.text);
+            return Ok(None);
+        }
+        Ok(Some(calls))
+    }
+
+    fn gave_none(&self) -> ModelError {
+        ModelError::Failed { model: self.by.model.name().to_owned(), reason: "it gave no reply".to_owned() }
+    }
+
+    fn count(&mut self, reply: &Reply) {
+        let Some(usage) = reply.usage else {
+            self.effort.usd = None;
+            return;
+        };
+        let usd = usage.usd.or_else(|| self.by.price.map(|price| price(usage.tokens_in, usage.tokens_out)));
+        let effort = &mut self.effort;
+        effort.tokens_in += usage.tokens_in;
+        effort.most_tokens_in = effort.most_tokens_in.max(usage.tokens_in);
+        effort.tokens_out += usage.tokens_out;
+        effort.usd = effort.usd.zip(usd).map(|(all, usd)| all + usd);
+        effort.seconds += usage.seconds;
+    }
+
+    /// Notes a reply of no use. `said` is the reply, or why there was none.
+    fn refuse(&mut self, trouble: String, said: &str) {
+        self.effort.last_useless = Some(format!("{trouble}: {}", quoted(said, KEPT_CHARS)));
+        self.trouble = Some(trouble);
+        self.useless += 1;
+    }
+
+    /// Does what a reply calls, one step at most: the ways of the next place are not known before. Returns why the walk
+    /// ends, where it does.
+    pub(super) fn act(&mut self, calls: Vec<Called>) -> Result<Option<End>, WalkError> {
+        // The model knows only the objects that its prompt had.
+        let shown = self.scene.as_ref().map(|scene| scene.objects.clone()).unwrap_or_default();
+        let (mut has_done, mut has_stepped) = (false, false);
+        for Called { act, why, note } in calls {
+            self.memory.note = note.or(self.memory.note.take());
+            match act {
+                Act::Observe if self.scene.is_none() => {
+                    self.observe()?;
+                    has_done = true;
+                }
+                Act::Observe => {}
+                Act::Step(_) if has_stepped => {}
+                Act::Step(way) => match self.step(way, why) {
+                    Ok(None) => (has_done, has_stepped) = (true, true),
+                    Ok(end) => return Ok(end),
+                    Err(trouble) => {
+                        self.effort.useless.no_way += 1;
+                        self.refuse(trouble, &format!("step {way:?}"));
+                        return Ok(None);
+                    }
+                },
+                Act::Stop(object) => {
+                    let object = object.filter(|_| self.names_object);
+                    let object = object.map(|object| self.pointed(&object, &shown)).transpose()?.flatten();
+                    self.stop = (Some(why), object);
+                    return Ok(Some(End::Stopped));
+                }
+            }
+        }
+        if has_done {
+            (self.trouble, self.useless) = (None, 0);
+        } else {
+            self.effort.useless.idle += 1;
+            self.refuse("you have already looked around here: step or stop".to_owned(), "observe");
+        }
+        Ok(None)
+    }
+
+    fn observe(&mut self) -> Result<(), WalkError> {
+        let at = (&self.here, self.heading);
+        let scene = look(self.agent_view, at, self.by.looks, self.names_object)?;
+        self.effort.looks += 1;
+        self.effort.undescribed += scene.undescribed;
+        self.memory.saw(self.number, &scene);
+        self.scene = Some(scene);
+        Ok(())
+    }
+
+    /// Takes a way. Returns why the walk ends instead, where it does; an error says why there is no such way.
+    fn step(&mut self, way: Option<usize>, why: String) -> Result<Option<End>, String> {
+        let ways = self.ways();
+        let Some(number) = way else { return Err("a step needs the number of a way".to_owned()) };
+        let to = number.checked_sub(1).and_then(|at| ways.get(at));
+        let Some((to, _)) = to else {
+            return Err(format!("there is no way {number} here: there are {}", ways.len()));
+        };
+        if self.steps.len() >= self.by.limits.max_hops {
+            return Ok(Some(End::Cap));
+        }
+        let times = self.hopped.entry((self.here.clone(), to.clone())).or_default();
+        if *times >= MOST_TIMES_A_HOP {
+            return Ok(Some(End::Circles));
+        }
+        *times += 1;
+        let from = self.number;
+        let chosen = choice(self.agent_view, &self.steps, &self.here, to);
+        let heading = self.agent_view.heading_to(&self.here, to).unwrap_or(self.heading);
+        self.stand(chosen, Some(why.clone()));
+        self.arrive(to.clone(), heading);
+        self.memory.hopped(from, self.number, &why);
+        Ok(None)
+    }
+
+    /// Adds the step at the place where it stands.
+    fn stand(&mut self, choice: Choice, reason: Option<String>) {
+        let scene = self.scene.as_ref();
+        let told = Told {
+            room: scene.and_then(|scene| scene.room.clone()),
+            ways: self.ways().len(),
+            things: scene.map_or(0, |scene| scene.things),
+        };
+        self.steps.push(Step {
+            viewpoint: self.here.clone(),
+            heading_rad: self.heading,
+            views: Vec::new(),
+            phrase: 0,
+            told: Some(told),
+            choice,
+            reason: reason.filter(|reason| !reason.is_empty()),
+        });
+    }
+
+    /// The object that the model names: one of those that it was shown, or what its words fit best.
+    fn pointed(&self, object: &Pointed, shown: &[(ObjectId, String)]) -> Result<Option<ObjectId>, WalkError> {
+        match object {
+            Pointed::Number(number) => Ok(number.checked_sub(1).and_then(|at| shown.get(at)).map(|(id, _)| id.clone())),
+            Pointed::Words(words) => {
+                let named = shown.iter().find(|(_, name)| normal(name) == normal(words));
+                match named.or_else(|| shown.iter().find(|(_, name)| agree(name, words))) {
+                    Some((id, _)) => Ok(Some(id.clone())),
+                    None => self.agent_view.point(&self.here, words),
+                }
+            }
+        }
+    }
+
+    /// The walk, where the model gave any answer.
+    pub(super) fn done(mut self, end: End) -> Result<Walked, WalkError> {
+        if let Some(failure) = self.failure.take().filter(|_| self.effort.calls == self.effort.useless.failed) {
+            return Err(failure.into());
+        }
+        let (reason, object) = std::mem::take(&mut self.stop);
+        self.stand(Choice::Stop, reason);
+        Ok(Walked { steps: self.steps, end, object, effort: Some(self.effort) })
+    }
+}

@@ -1,0 +1,18 @@
+//! Text that somebody else wrote, made safe to stand in a prompt.
+
+/// A text as one line without angle brackets, so that it cannot end its marks in a prompt.
+pub(crate) fn one_line(text: &str) -> String {
+    text.split(|c: char| c.is_whitespace() || c.is_control() || matches!(c, '<' | '>'))
+        .filter(|word| !word.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// The same, cut behind a number of characters.
+pub(crate) fn quoted(text: &str, most_chars: usize) -> String {
+    let line = one_line(text);
+    match line.char_indices().nth(most_chars) {
+        Some((at, _)) => format!("{} ...", &line[..at]),
+        None => line,
+    }
+}
