@@ -19,7 +19,7 @@ pub enum Gait {
 }
 
 /// How far off a place can be on the map that a prompt tells, metres.
-const ROUNDED_M: f64 = 0.15;
+const ROUNDED_M: f64 = 0.2;
 
 /// Plays a model that walks.
 #[derive(Debug, Clone)]
@@ -70,11 +70,13 @@ impl Walker {
         Self { gait, seed, routes: routes.into_iter().collect() }
     }
 
+    /// Takes the way that ends nearest to the next place. Places can lie closer together than the map tells, so the number
+    /// of hops says best how far along the route it is, as long as it is there.
     fn along_route(&self, seen: &Prompt<'_>) -> String {
         let Some(Route(route)) = self.routes.get(seen.text) else { return "I do not know this one.".to_owned() };
-        // Places of a graph can lie closer together than the map tells, so the number of hops says more.
-        let is_there = |place: &&DVec3| place.distance(seen.here) < ROUNDED_M;
-        let here = route.get(seen.hops).filter(is_there).map_or_else(|| nearest(route, seen.here), |_| seen.hops);
+        let is_at = |place: &usize| route.get(*place).is_some_and(|place| place.distance(seen.here) < ROUNDED_M);
+        let strayed = || (0..route.len()).rev().find(is_at).unwrap_or_else(|| nearest(route, seen.here));
+        let here = Some(seen.hops).filter(is_at).unwrap_or_else(strayed);
         let Some(next) = route.get(here + 1) else { return call("stop", None, "the route ends here") };
         let way = nearest(&seen.ends(), *next) + 1;
         format!("{}\n{}", call("step", Some(way), "the route leads there"), call("observe", None, "to see it"))
