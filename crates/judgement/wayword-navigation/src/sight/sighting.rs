@@ -5,7 +5,7 @@
 
 use super::AgentView;
 use crate::{directions::places, error::WalkError, grounders::labels_of};
-use wayword_core::{Compass, Heading, Label, View, ViewpointId};
+use wayword_core::{Compass, GroundTruth, Heading, View, ViewpointId};
 use wayword_follower::online::{Hop, Sighting};
 
 /// Where the things come from that an agent is told of.
@@ -76,18 +76,18 @@ impl AgentView<'_> {
         Ok(Surroundings { sighting: Sighting { hops, room: around.views.iter().find_map(room), things: found }, ways })
     }
 
-    /// The labelled things around a node, and its room; `None` where there are no labels.
+    /// All labels around a node, and its room; `None` where there are no labels.
     ///
     /// # Errors
     /// When the platform gives no view.
-    pub(crate) fn labelled(&self, here: &ViewpointId) -> Result<Option<(Vec<Label>, Option<String>)>, WalkError> {
+    pub(crate) fn labels(&self, here: &ViewpointId) -> Result<Option<GroundTruth>, WalkError> {
         let around = self.around(here)?;
-        let mut labels = Vec::new();
-        for view in &around.views {
-            let Some(truth) = view.ground_truth() else { return Ok(None) };
-            labels.extend(truth.labels.iter().cloned());
-        }
-        Ok(Some((labels, around.views.iter().find_map(room))))
+        let all: Option<Vec<&GroundTruth>> = around.views.iter().map(View::ground_truth).collect();
+        Ok(all.map(|all| GroundTruth {
+            labels: all.iter().flat_map(|truth| &truth.labels).cloned().collect(),
+            lists_objects: all.iter().all(|truth| truth.lists_objects),
+            room: around.views.iter().find_map(room),
+        }))
     }
 
     /// The ways out of a node, for an agent that looks along `heading`: the node that each leads to, and the hop.

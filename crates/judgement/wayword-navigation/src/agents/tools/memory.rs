@@ -117,7 +117,7 @@ impl Memory {
 
     /// A place, told by where it lies from the start, what was seen there, and where its ways lead.
     fn told(&self, number: usize, place: &Place) -> String {
-        let [right_m, ahead_m, up_m] = self.from_start(place.at);
+        let [right_m, ahead_m, up_m] = self.off_start(place.at);
         let way = |(to, end): &(ViewpointId, DVec3)| match self.number(to) {
             Some(number) => number.to_string(),
             None => format!("new {}", self.spot(*end)),
@@ -135,12 +135,12 @@ impl Memory {
 
     /// A point of the map in short, as "(1.2, -3.4)": to the right of the start, and ahead.
     pub(super) fn spot(&self, point: DVec3) -> String {
-        let [right_m, ahead_m, _] = self.from_start(point);
+        let [right_m, ahead_m, _] = self.off_start(point);
         format!("({right_m:.1}, {ahead_m:.1})")
     }
 
     /// A point by its distance from the start to the right, ahead and up, as the agent looked there; metres, rounded.
-    fn from_start(&self, point: DVec3) -> [f64; 3] {
+    fn off_start(&self, point: DVec3) -> [f64; 3] {
         let (origin, heading) = self.origin;
         let off = point - origin;
         let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());

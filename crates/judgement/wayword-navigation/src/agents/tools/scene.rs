@@ -2,7 +2,7 @@
 
 use crate::{error::WalkError, one_line::quoted, sight::AgentView};
 use std::sync::Arc;
-use wayword_core::{Heading, Image, Label, ModelError, ObjectId, View, ViewpointId};
+use wayword_core::{GroundTruth, Heading, Image, Label, ModelError, ObjectId, View, ViewpointId};
 
 /// How the agent sees.
 #[derive(Clone, Copy)]
@@ -70,7 +70,7 @@ pub(super) fn look(
 ) -> Result<Scene, WalkError> {
     match looks {
         Looks::Labels => {
-            let (labels, room) = agent_view.labelled(here)?.ok_or_else(|| missing("labels"))?;
+            let GroundTruth { labels, room, .. } = agent_view.labels(here)?.ok_or_else(|| missing("labels"))?;
             Ok(labelled(labels, room, heading, numbers_objects))
         }
         Looks::Pictures => pictured(&agent_view.views(here)?, heading),

@@ -201,7 +201,7 @@ impl<'a> Walker<'a> {
                 }
                 Act::Observe => {}
                 Act::Step(_) if has_stepped => {}
-                Act::Step(way) => match self.step(way, why) {
+                Act::Step(way) => match self.step(way, &why) {
                     Ok(None) => (has_done, has_stepped) = (true, true),
                     Ok(end) => return Ok(end),
                     Err(trouble) => {
@@ -238,7 +238,7 @@ impl<'a> Walker<'a> {
     }
 
     /// Takes a way. Returns why the walk ends instead, where it does; an error says why there is no such way.
-    fn step(&mut self, way: Option<usize>, why: String) -> Result<Option<End>, String> {
+    fn step(&mut self, way: Option<usize>, why: &str) -> Result<Option<End>, String> {
         let ways = self.ways();
         let Some(number) = way else { return Err("a step needs the number of a way".to_owned()) };
         let to = number.checked_sub(1).and_then(|at| ways.get(at));
@@ -256,9 +256,9 @@ impl<'a> Walker<'a> {
         let from = self.number;
         let chosen = choice(self.agent_view, &self.steps, &self.here, to);
         let heading = self.agent_view.heading_to(&self.here, to).unwrap_or(self.heading);
-        self.stand(chosen, Some(why.clone()));
+        self.stand(chosen, Some(why.to_owned()));
         self.arrive(to.clone(), heading);
-        self.memory.hopped(from, self.number, &why);
+        self.memory.hopped(from, self.number, why);
         Ok(None)
     }
 
