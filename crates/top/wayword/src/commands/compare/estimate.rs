@@ -151,7 +151,7 @@ impl fmt::Display for Estimate {
         }
         writeln!(
             f,
-            "\nestimate, if it walks along the annotated paths and looks around at each place, and the ledger is empty:"
+            "\nestimate, if it walks along the annotated paths, looks around at each place and never searches, and the ledger is empty:"
         )?;
         self.models.fmt(f)
     }
