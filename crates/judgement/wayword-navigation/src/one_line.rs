@@ -1,4 +1,4 @@
-//! Text that somebody else wrote, made safe to stand in a prompt.
+//! Untrusted text, made safe to stand in a prompt.
 
 /// A text as one line without angle brackets, so that it cannot end its marks in a prompt.
 pub(crate) fn one_line(text: &str) -> String {

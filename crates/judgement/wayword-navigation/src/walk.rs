@@ -57,6 +57,13 @@ pub struct Step {
     pub reason: Option<String>,
 }
 
+impl Step {
+    /// A stop at a node of an agent that neither looked nor was told anything, and gave no reason.
+    pub(crate) fn new(viewpoint: ViewpointId, heading_rad: Heading, choice: Choice) -> Self {
+        Self { viewpoint, heading_rad, views: Vec::new(), phrase: 0, told: None, choice, reason: None }
+    }
+}
+
 /// What a walk of an agent by a language model took. Calls of a model that only describes pictures are not counted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
@@ -81,7 +88,7 @@ pub struct Effort {
     /// What was wrong with the last of them, and how it began.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_useless: Option<String>,
-    /// Views that nobody could describe.
+    /// Views that could not be described.
     #[serde(default)]
     pub undescribed: usize,
 }

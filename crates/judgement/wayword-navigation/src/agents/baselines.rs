@@ -77,21 +77,12 @@ pub(super) fn follow(
 ) -> Walked {
     let mut steps = Vec::new();
     let (mut here, mut heading) = (start.viewpoint.clone(), start.heading);
-    let stand = |here: &ViewpointId, heading, choice| Step {
-        viewpoint: here.clone(),
-        heading_rad: heading,
-        views: Vec::new(),
-        phrase: 0,
-        told: None,
-        choice,
-        reason: None,
-    };
     while let Some(to) = (steps.len() < hops).then(|| next(&here, heading)).flatten() {
-        steps.push(stand(&here, heading, Choice::Unseeing));
-        heading = heading_to(graph, &here, &to).unwrap_or(heading);
-        here = to;
+        let onward = heading_to(graph, &here, &to).unwrap_or(heading);
+        steps.push(Step::new(here, heading, Choice::Unseeing));
+        (here, heading) = (to, onward);
     }
-    steps.push(stand(&here, heading, Choice::Stop));
+    steps.push(Step::new(here, heading, Choice::Stop));
     Walked { steps, end: End::Stopped, object: None, effort: None }
 }
 

@@ -34,15 +34,7 @@ pub fn walk_by_phrases(
         let decision = policy.decide(&here, heading, &sight);
         let scored = scored(&sight, in_hand, directions.phrases.len());
         let viewpoint = here.clone();
-        let step = |choice| Step {
-            viewpoint,
-            heading_rad: heading,
-            views: scored,
-            phrase: in_hand,
-            told: None,
-            choice,
-            reason: None,
-        };
+        let step = |choice| Step { views: scored, phrase: in_hand, ..Step::new(viewpoint, heading, choice) };
         match decision {
             Decision::Stop | Decision::DeadEnd => {
                 steps.push(step(Choice::Stop));
@@ -82,16 +74,7 @@ fn go_back(
         if at + 1 == over.len() || steps.len() >= max_hops {
             break;
         }
-        let (viewpoint, choice) = (here.clone(), Choice::Back);
-        steps.push(Step {
-            viewpoint,
-            heading_rad: heading,
-            views: Vec::new(),
-            phrase: 0,
-            told: None,
-            choice,
-            reason: None,
-        });
+        steps.push(Step::new(here.clone(), heading, Choice::Back));
     }
     (here, heading)
 }

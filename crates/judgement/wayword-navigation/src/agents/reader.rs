@@ -53,8 +53,7 @@ fn walk(
         };
         let choice = to.map_or(Choice::Stop, |to| choice(agent_view, &steps, &here, to));
         let told = Told { room: seen.room.clone(), ways: seen.hops.len(), things: seen.things.len() };
-        let (viewpoint, views) = (here.clone(), Vec::new());
-        steps.push(Step { viewpoint, heading_rad: heading, views, phrase: 0, told: Some(told), choice, reason: None });
+        steps.push(Step { told: Some(told), ..Step::new(here.clone(), heading, choice) });
         let Some(to) = to else { break end };
         heading = agent_view.heading_to(&here, to).unwrap_or(heading);
         here = to.clone();

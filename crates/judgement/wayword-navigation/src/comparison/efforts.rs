@@ -28,7 +28,7 @@ pub struct Efforts {
     pub most_tokens_in: u64,
     /// Replies of no use.
     pub useless: Useless,
-    /// Views that nobody could describe.
+    /// Views that could not be described.
     #[serde(default)]
     pub undescribed: usize,
     /// Walks that stopped at their start.

@@ -21,7 +21,7 @@ pub fn rehearse(
     (looks, limits): (Looks<'_>, Limits),
     route: &[ViewpointId],
 ) -> Result<Vec<Request>, WalkError> {
-    let by = ModelWalker { model: &Nobody, price: None, looks, limits, seed: 0 };
+    let by = ModelWalker { model: &Silent, price: None, looks, limits, seed: 0 };
     let mut walker = Walker::new(agent_view, start, text, names_object, by);
     let call = |act| Called { act, why: TYPICAL_REASON.to_owned(), note: Some(TYPICAL_NOTE.to_owned()) };
     let mut requests = vec![walker.request()?];
@@ -43,11 +43,11 @@ const TYPICAL_REASON: &str = "The instruction says to go past the table, and thi
 const TYPICAL_NOTE: &str = "Out of the bedroom and past the table; next: turn left into the kitchen.";
 
 /// A model that is never asked.
-struct Nobody;
+struct Silent;
 
-impl LanguageModel for Nobody {
+impl LanguageModel for Silent {
     fn name(&self) -> &'static str {
-        "nobody"
+        "silent"
     }
 
     fn complete(&self, _: &[Request]) -> Vec<Result<Reply, ModelError>> {

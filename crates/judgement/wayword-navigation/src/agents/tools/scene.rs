@@ -11,7 +11,7 @@ pub enum Looks<'a> {
     Labels,
     /// It is shown the four pictures.
     Pictures,
-    /// It is told what somebody says of the four pictures.
+    /// It is told in words what the four pictures show.
     Captions(&'a dyn Describes),
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Scene {
     pub(super) objects: Vec<(ObjectId, String)>,
     /// How many things there are.
     pub(super) things: usize,
-    /// Views that nobody could describe.
+    /// Views that could not be described.
     pub(super) undescribed: usize,
 }
 

@@ -99,7 +99,7 @@ impl<'a> Walker<'a> {
     /// Why it may not go on, where it may not.
     pub(super) fn spent(&self) -> Option<End> {
         let limits = &self.by.limits;
-        // What nobody knows the price of may have passed the limit already.
+        // Without a price, the limit may have been passed already.
         let is_spent = limits.max_usd.is_some_and(|most| self.effort.usd.is_none_or(|usd| usd >= most));
         match () {
             () if self.useless >= MOST_USELESS => Some(End::NoUse),
@@ -270,15 +270,9 @@ impl<'a> Walker<'a> {
             ways: self.ways().len(),
             things: scene.map_or(0, |scene| scene.things),
         };
-        self.steps.push(Step {
-            viewpoint: self.here.clone(),
-            heading_rad: self.heading,
-            views: Vec::new(),
-            phrase: 0,
-            told: Some(told),
-            choice,
-            reason: reason.filter(|reason| !reason.is_empty()),
-        });
+        let reason = reason.filter(|reason| !reason.is_empty());
+        let step = Step::new(self.here.clone(), self.heading, choice);
+        self.steps.push(Step { told: Some(told), reason, ..step });
     }
 
     /// The object that the model names: one of those that it was shown, or what its words fit best.

@@ -31,7 +31,7 @@ pub(super) enum Agent {
     /// Reads, and knows only where it was. Things are labels, or what scores at least a threshold.
     Reader(Option<f32>),
     /// A language model that looks around and steps.
-    Tools(Limits),
+    Tools,
     /// Reads, and knows the map.
     ReaderMap(Prior),
     /// This many random hops.
@@ -50,7 +50,7 @@ impl Agent {
         let agent = |name: &String| match name.as_str() {
             READER => Some(Self::Reader(kept.reader_threshold)),
             READER_MAP => None,
-            TOOLS => Some(Self::Tools(kept.tools.as_ref()?.limits)),
+            TOOLS => Some(Self::Tools),
             _ => {
                 let parameters = *kept.parameters.get(name)?;
                 Some(Self::Phrases { name: name.clone(), parameters, by_detector: name == BY_DETECTOR })
@@ -69,7 +69,7 @@ impl Agent {
         match self {
             Self::Phrases { name, .. } => name.clone(),
             Self::Reader(_) => READER.to_owned(),
-            Self::Tools(_) => TOOLS.to_owned(),
+            Self::Tools => TOOLS.to_owned(),
             Self::ReaderMap(_) => READER_MAP.to_owned(),
             Self::Random(hops) => format!("random/{hops}"),
             Self::Straight(hops) => format!("straight/{hops}"),
@@ -81,7 +81,7 @@ impl Agent {
     /// The agent as the comparison takes it.
     pub(super) fn walker(&self) -> Walker {
         let (kind, reads) = match self {
-            Self::Phrases { .. } | Self::Reader(_) | Self::Tools(_) => (AgentKind::Agent, true),
+            Self::Phrases { .. } | Self::Reader(_) | Self::Tools => (AgentKind::Agent, true),
             Self::Random(_) | Self::Straight(_) => (AgentKind::LowerBound, false),
             Self::ReaderMap(_) | Self::NearestRoom => (AgentKind::Informed, true),
             Self::Oracle => (AgentKind::UpperBound, false),

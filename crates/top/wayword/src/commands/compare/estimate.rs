@@ -58,11 +58,11 @@ impl Estimate {
     ) -> Result<Self, Error> {
         let mut estimate = Self { items: items.len(), walks: 0, most_tokens_in: 0, models: Bill::default() };
         if is_model(&kept.split) {
-            estimate.models.add(&kept.split, "splits", split(items, agents)?);
+            estimate.models.add(&kept.split, "splits", split(items, agents));
         }
         if let Some(tools) = &kept.tools {
-            estimate.walks = items.iter().map(|item| texts(agents, item)).sum();
-            let load = estimate.walking(tools, items, agents, platform)?;
+            estimate.walks = items.iter().map(|item| Agent::Tools.texts(item).count()).sum();
+            let load = estimate.walking(tools, items, platform)?;
             estimate.models.add(&tools.llm, "walks", load);
             if is_model(&tools.see) {
                 let places: BTreeSet<_> = items
@@ -78,13 +78,7 @@ impl Estimate {
     }
 
     /// What the walks take, by those of a few items.
-    fn walking(
-        &mut self,
-        tools: &ToolsKept,
-        items: &[Item],
-        agents: &[Agent],
-        platform: &dyn Platform,
-    ) -> Result<Load, Error> {
+    fn walking(&mut self, tools: &ToolsKept, items: &[Item], platform: &dyn Platform) -> Result<Load, Error> {
         let grounder = Lexical::new(Sees::Views);
         let looks_at_pictures = tools.see == PICTURES;
         let looks = if tools.see == LABELS { Looks::Labels } else { Looks::Captions(&Typical) };
@@ -92,7 +86,7 @@ impl Estimate {
         for item in items.iter().take(FEW) {
             let agent_view = AgentView::new(platform, &grounder, false, &item.start.scene)?;
             let names_object = item.episode.target_object.is_some();
-            for text in agents.iter().filter(|agent| agent.name() == TOOLS).flat_map(|agent| agent.texts(item)) {
+            for text in Agent::Tools.texts(item) {
                 let route = &item.episode.viewpoints;
                 let sight = (looks, tools.limits);
                 let asked = rehearse(&agent_view, &item.start, &text.text, names_object, sight, route)?;
@@ -118,21 +112,16 @@ fn words_of(request: &Request) -> String {
     messages.chain(request.tools.iter().flat_map(|tool| [tool.name, tool.does, tool.arguments])).collect()
 }
 
-/// How many texts of an item the agent by a language model walks by.
-fn texts(agents: &[Agent], item: &Item) -> usize {
-    agents.iter().filter(|agent| agent.name() == TOOLS).map(|agent| agent.texts(item).count()).sum()
-}
-
 /// What taking the instructions apart takes, each once.
-fn split(items: &[Item], agents: &[Agent]) -> Result<Load, Error> {
+fn split(items: &[Item], agents: &[Agent]) -> Load {
     let mut load = Load::default();
-    let Some(by_phrases) = agents.iter().find(|agent| matches!(agent, Agent::Phrases { .. })) else { return Ok(load) };
+    let Some(by_phrases) = agents.iter().find(|agent| matches!(agent, Agent::Phrases { .. })) else { return load };
     let texts: BTreeSet<&str> =
         items.iter().flat_map(|item| by_phrases.texts(item)).map(|text| text.text.as_str()).collect();
     for text in texts {
         load.call(&split_prompt(text).unwrap_or_default(), SPLIT_TOKENS);
     }
-    Ok(load)
+    load
 }
 
 impl fmt::Display for Estimate {

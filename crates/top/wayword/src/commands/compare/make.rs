@@ -51,11 +51,9 @@ impl Crew<'_> {
             let read = || agent.texts(item).map(|text| (text.set.clone(), text.index)).collect();
             let unread = |walks| (0..walks).map(|index| (UNREAD.to_owned(), index)).collect::<Vec<_>>();
             let places = match agent {
-                Agent::Phrases { .. }
-                | Agent::Reader(_)
-                | Agent::Tools(_)
-                | Agent::ReaderMap(_)
-                | Agent::NearestRoom => read(),
+                Agent::Phrases { .. } | Agent::Reader(_) | Agent::Tools | Agent::ReaderMap(_) | Agent::NearestRoom => {
+                    read()
+                }
                 Agent::Random(_) => unread(RANDOM_WALKS),
                 Agent::Straight(_) | Agent::Oracle => unread(1),
             };
@@ -91,7 +89,7 @@ impl Crew<'_> {
                         add(text, None, walk_by_reading(&views, &item.start, &text.text, &things)?);
                     }
                 }
-                Agent::Tools(_) => {
+                Agent::Tools => {
                     for (text, walked) in self.by_tools(agent, item)? {
                         add(text, None, walked);
                     }

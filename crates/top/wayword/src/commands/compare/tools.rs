@@ -24,7 +24,7 @@ use wayword_synthesis::observe::talk_about;
 
 /// Who walks by tools, and with what.
 pub(super) struct Toolbox {
-    pub(super) model: Arc<dyn LanguageModel>,
+    model: Arc<dyn LanguageModel>,
     price: Option<Box<dyn Fn(u64, u64) -> f64 + Send + Sync>>,
     sight: Sight,
     limits: Limits,
@@ -74,7 +74,7 @@ impl Toolbox {
         ModelWalker { model, price, looks, limits: self.limits, seed: self.seed }
     }
 
-    /// Whether anybody looks at pictures.
+    /// Whether it sees by pictures.
     pub(super) fn needs_pictures(&self) -> bool {
         !matches!(self.sight, Sight::Labels)
     }
@@ -104,14 +104,14 @@ impl Describes for Captions {
     }
 }
 
-/// The settings by which views are described: those of the comparison, where nobody but the model that sees takes part.
+/// The settings by which views are described: those of the comparison, in which no model takes part but the one that sees.
 pub(super) fn describing(settings: &Settings) -> Settings {
     let [ask, summarise, write] = [RULES; 3].map(str::to_owned);
     let roles = Roles { ask, summarise, write, write_sees: false, ..settings.roles.clone() };
     Settings { roles, ..settings.clone() }
 }
 
-/// Refuses a limit on the money of a walk where nobody knows what its model costs.
+/// Refuses a limit on the money of a walk where the price of its model is not known.
 ///
 /// # Errors
 /// When there is such a limit.

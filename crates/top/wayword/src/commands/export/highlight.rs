@@ -33,7 +33,7 @@ struct Counts {
     texts: usize,
     /// Texts with a doubt.
     doubted: usize,
-    /// Texts that nobody could follow, so that no other words are known.
+    /// Texts that could not be followed, so that no other words are known.
     unfollowed: usize,
     words: usize,
     /// Words that are likely wrong, and words that are uncertain.

@@ -150,7 +150,7 @@ pub(super) fn swaps(comparison: &Comparison) -> Vec<Line<'_>> {
     }))
 }
 
-/// Columns of what walks effort.
+/// Columns of what walks took.
 pub(super) const BESIDE_EFFORTS: [&str; 7] =
     ["calls", "tokens in", "tokens out", "US$", "hops", "seconds", "largest prompt"];
 /// Columns of what went wrong in walks.
