@@ -106,6 +106,16 @@ pub fn capital(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
+/// The byte ranges of what stands between the blanks of a text.
+pub fn pieces(text: &str) -> impl Iterator<Item = [usize; 2]> + '_ {
+    let places = text.split_inclusive(char::is_whitespace).scan(0, |done, piece| {
+        let from = *done;
+        *done += piece.len();
+        Some([from, from + piece.trim_end().len()])
+    });
+    places.filter(|place| place[0] < place[1])
+}
+
 /// Number of words in a text, as people count them: parts between spaces, without lone marks.
 #[must_use]
 pub fn word_count(text: &str) -> usize {
@@ -122,6 +132,14 @@ pub fn sentence_count(text: &str) -> usize {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn pieces_are_what_stands_between_blanks() {
+        for text in ["", " ", "  turn left,\n\t門 🪑 ."] {
+            let told: Vec<&str> = pieces(text).map(|[from, to]| &text[from..to]).collect();
+            assert_eq!(told, text.split_whitespace().collect::<Vec<_>>());
+        }
+    }
 
     #[test]
     fn words_sentences_and_marks_are_told_apart() {

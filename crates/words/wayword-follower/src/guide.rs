@@ -187,26 +187,18 @@ impl Guide {
         self.steps.iter().enumerate().flat_map(of_step)
     }
 
-    /// The guide without what it tells within a byte range of its text; `None` where nothing is left, or all of it.
-    pub(crate) fn without(&self, [from, to]: [usize; 2]) -> Option<Self> {
+    /// Whether it tells anything within a byte range of its text, and something is left without that.
+    pub(crate) fn stands_without(&self, [from, to]: [usize; 2]) -> bool {
         let is_within = |span: [usize; 2]| from <= span[0] && span[1] <= to;
-        let mut left = self.clone();
-        let mut is_changed = false;
-        for told in &mut left.steps {
-            if told.step.turn_span.is_some_and(is_within) {
-                told.leave_out_turn();
-                told.step.turn_span = None;
-                is_changed = true;
-            }
-            let before = told.mentions.len();
-            told.mentions.retain(|mention| !mention.span.is_some_and(is_within));
-            is_changed |= told.mentions.len() < before;
-        }
-        let tells_all = |told: &Told| told.mentions.is_empty() && told.step.turn.is_none();
+        let loses_turn = |told: &Told| told.step.turn_span.is_some_and(is_within);
+        let loses = |mention: &Mention| mention.span.is_some_and(is_within);
+        let is_changed = self.steps.iter().any(|told| loses_turn(told) || told.mentions.iter().any(loses));
         let overlaps = |told: &Told| told.step.span[0] < to && from < told.step.span[1];
-        left.steps.retain(|told| !(is_within(told.step.span) || (is_changed && overlaps(told) && tells_all(told))));
-        is_changed |= left.len() < self.len();
-        (is_changed && !left.is_empty()).then_some(left)
+        let tells_no_more =
+            |told: &Told| told.mentions.iter().all(loses) && (told.step.turn.is_none() || loses_turn(told));
+        let is_gone = |told: &&Told| is_within(told.step.span) || (is_changed && overlaps(told) && tells_no_more(told));
+        let gone = self.steps.iter().filter(is_gone).count();
+        (is_changed || gone > 0) && gone < self.len()
     }
 
     /// Number of its turns.

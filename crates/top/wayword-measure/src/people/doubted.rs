@@ -4,6 +4,7 @@ use crate::share::{Share, cell, table};
 use serde::Serialize;
 use wayword_core::{Cause, Doubt, Grade, doubt::overlap};
 use wayword_formats::hear::{LabelledSpan, LabelledText};
+use wayword_language::text::pieces;
 
 /// A text with its doubts.
 pub(super) struct Doubted<'a> {
@@ -60,7 +61,8 @@ fn row(name: &'static str, held: &[Doubted<'_>], is: &dyn Fn(&Doubt) -> bool, se
         judged.map(|labels| (held.text.name.clone(), labels.contains(&false))).collect::<Vec<_>>()
     });
     let words = held.iter().flat_map(|held| {
-        let words = places(&held.text.text).into_iter();
+        let text = held.text.text.as_str();
+        let words = pieces(text).filter(|place| text[place[0]..place[1]].contains(char::is_alphanumeric));
         words.map(|word| (held.text.name.clone(), !about(held, word).is_empty())).collect::<Vec<_>>()
     });
     Row {
@@ -71,17 +73,6 @@ fn row(name: &'static str, held: &[Doubted<'_>], is: &dyn Fn(&Doubt) -> bool, se
         corrected: Share::of(corrected, seed),
         words: Share::of(words, seed),
     }
-}
-
-/// The byte ranges of the words of a text.
-fn places(text: &str) -> Vec<[usize; 2]> {
-    let pieces = text.split_inclusive(char::is_whitespace).scan(0, |done, piece| {
-        let from = *done;
-        *done += piece.len();
-        Some((from, piece.trim_end()))
-    });
-    let has_word = |piece: &str| piece.contains(char::is_alphanumeric);
-    pieces.filter(|(_, piece)| has_word(piece)).map(|(from, piece)| [from, from + piece.len()]).collect()
 }
 
 /// Whether a doubt offers what people would say for a span: the same words, or to leave out all of the span.

@@ -152,7 +152,7 @@ pub fn doubts(
             doubt.span = motion.span;
         }
         let turns = |site: &Site| site.tells_motion() && is_within(site.span, doubt.span) && site.gain() > 0.0;
-        if is_wrong && !sites.iter().any(turns) && guide.without(doubt.span).is_some() {
+        if is_wrong && !sites.iter().any(turns) && guide.stands_without(doubt.span) {
             doubt.alternatives.push(Alternative { words: None, gain: None });
         }
         for site in &sites {

@@ -177,10 +177,6 @@ impl Counts {
     }
 }
 
-fn texts_with(texts: usize) -> String {
-    format!("{} with words that are", count(texts, "text"))
-}
-
 /// The report as people read it.
 pub(super) struct Shown<'a> {
     pub(super) report: &'a CheckReport,
@@ -211,9 +207,11 @@ impl fmt::Display for Shown<'_> {
             write!(f, "\nambiguous: {} may mean several places or objects", count(report.ambiguous, "text"))?;
         }
         if !report.doubted.is_empty() {
-            let with = |grade| report.doubted.iter().filter(|text| text.has(grade)).count();
-            let [likely, uncertain] = Grade::ALL.map(with);
-            write!(f, "\ndoubts: {} likely wrong, {} not sure", texts_with(likely), texts_with(uncertain))?;
+            let with = |grade: Grade| {
+                let texts = report.doubted.iter().filter(|text| text.has(grade)).count();
+                format!("{} with words that are {}", count(texts, "text"), grade.told())
+            };
+            write!(f, "\ndoubts: {}", Grade::ALL.map(with).join(", "))?;
         }
         if let Some(file) = &report.calibration {
             write!(f, "\ncalibration: {file}")?;

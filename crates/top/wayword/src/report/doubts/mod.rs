@@ -15,6 +15,7 @@ use wayword_core::{
     Cause, Doubt, Grade,
     doubt::{overlap, parts},
 };
+use wayword_language::text::pieces;
 
 /// The version of the file.
 const VERSION: u32 = 1;
@@ -83,7 +84,7 @@ impl Summary {
             texts: texts.len(),
             doubted: texts.iter().filter(|text| !text.doubts.is_empty()).count(),
             unfollowed: texts.iter().filter(|text| text.unfollowed.is_some()).count(),
-            words: texts.iter().map(|text| text.text.split_whitespace().count()).sum(),
+            words: texts.iter().map(|text| pieces(&text.text).count()).sum(),
             grades: grades.into(),
             causes: causes.into(),
         }
@@ -98,12 +99,7 @@ impl Summary {
 
 /// How many words of a text lie in a byte range, whole or in part.
 fn words_in(text: &str, span: [usize; 2]) -> usize {
-    let pieces = text.split_inclusive(char::is_whitespace).scan(0, |done, piece| {
-        let from = *done;
-        *done += piece.len();
-        Some([from, from + piece.trim_end().len()])
-    });
-    pieces.filter(|place| place[0] < place[1] && overlap(*place, span)).count()
+    pieces(text).filter(|place| overlap(*place, span)).count()
 }
 
 impl Highlights {
