@@ -279,4 +279,15 @@ mod tests {
         assert_eq!(flags, keys);
         assert!(flags.len() > 40, "{flags:?}");
     }
+
+    #[test]
+    fn a_participant_whose_id_begins_with_a_hyphen_can_be_forgotten() {
+        let typed = ["wayword", "study", "forget", "study", "--participant", "-HuqVrYIytaJwRfGxaH5Pw", "--dry-run"];
+        let Command::Study(Study { command: StudyCommand::Forget(forget) }) =
+            Cli::try_parse_from(typed).unwrap().command
+        else {
+            panic!("not read as forget");
+        };
+        assert_eq!((forget.participant.as_str(), forget.dry_run), ("-HuqVrYIytaJwRfGxaH5Pw", true));
+    }
 }

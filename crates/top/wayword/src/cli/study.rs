@@ -220,7 +220,8 @@ pub struct StudyForget {
     /// Folder of the study.
     pub study: PathBuf,
     /// The participant: our id (`status --participants` lists them), the recruiter's, or a personal link.
-    #[arg(long, value_name = "ID")]
+    // Ids are drawn from an alphabet that has a hyphen, so one may begin with it.
+    #[arg(long, value_name = "ID", allow_hyphen_values = true)]
     pub participant: String,
     /// Only say what would be removed.
     #[arg(long)]
