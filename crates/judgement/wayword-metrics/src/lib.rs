@@ -24,6 +24,6 @@ pub use study::{
     share_difference, wilson,
 };
 pub use trajectory::{
-    Atlas, Demand, Distances, Grounding, Invalid, Metric, Outcome, Rule, Score, Trajectory, problems, score,
+    Atlas, Course, Demand, Distances, Grounding, Invalid, Metric, Outcome, Rule, Score, Trajectory, problems, score,
 };
 pub use words::Words;

@@ -33,26 +33,31 @@ impl Distances {
     /// scene lacks one of them.
     #[must_use]
     pub fn metres(&self, a: &ViewpointId, b: &ViewpointId) -> Option<f64> {
-        let metres = self.between(self.place(a)?, self.place(b)?);
+        let metres = self.between(self.place(a.as_str())?, self.place(b.as_str())?);
         metres.is_finite().then_some(metres)
     }
 
     /// Whether the scene has such a viewpoint.
     #[must_use]
     pub fn has(&self, viewpoint: &ViewpointId) -> bool {
-        self.places.find(viewpoint).is_some()
+        self.place(viewpoint.as_str()).is_some()
     }
 
     /// Whether an edge joins two viewpoints. None joins a viewpoint to itself.
     #[must_use]
     pub fn has_edge(&self, a: &ViewpointId, b: &ViewpointId) -> bool {
-        let ends = self.place(a).zip(self.place(b));
+        let ends = self.place(a.as_str()).zip(self.place(b.as_str()));
         ends.is_some_and(|(a, b)| self.joins(a, b))
     }
 
     /// The number of a viewpoint, for the other functions.
-    pub(super) fn place(&self, viewpoint: &ViewpointId) -> Option<usize> {
+    pub(super) fn place(&self, viewpoint: &str) -> Option<usize> {
         self.places.find(viewpoint)
+    }
+
+    /// The name of a place.
+    pub(super) fn name(&self, place: usize) -> &ViewpointId {
+        self.places.name(place)
     }
 
     /// From one place to another, metres; infinite where there is no way.
@@ -79,7 +84,7 @@ impl Roads {
         let mut ends: Vec<(usize, usize, f64)> = graph
             .edges()
             .filter(|(_, _, length_m)| length_m.is_finite())
-            .filter_map(|(a, b, length_m)| Some((places.find(a)?, places.find(b)?, length_m)))
+            .filter_map(|(a, b, length_m)| Some((places.find(a.as_str())?, places.find(b.as_str())?, length_m)))
             .flat_map(|(a, b, length_m)| [(a, b, length_m), (b, a, length_m)])
             .collect();
         ends.sort_unstable_by_key(|(a, b, _)| (*a, *b));

@@ -1,6 +1,6 @@
 //! How closely a trajectory keeps to the annotated path.
 
-use super::{Distances, invalid::Located};
+use super::Distances;
 
 /// The scale for distances from the path, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
 const THRESHOLD_M: f64 = 3.0;
@@ -15,8 +15,7 @@ pub(super) struct Apart {
 }
 
 impl Apart {
-    pub(super) fn new(distances: &Distances, located: &Located) -> Self {
-        let Located { taken, reference } = located;
+    pub(super) fn new(distances: &Distances, taken: &[usize], reference: &[usize]) -> Self {
         let mut metres = Vec::with_capacity(taken.len() * reference.len());
         for place in taken {
             metres.extend(reference.iter().map(|on_path| distances.between(*place, *on_path)));

@@ -13,7 +13,7 @@ pub enum Invalid {
     #[error("the trajectory starts at {found}: it has to start where its episode does, at {expected}")]
     Start {
         /// Its first viewpoint.
-        found: ViewpointId,
+        found: String,
         /// The episode's.
         expected: ViewpointId,
     },
@@ -24,8 +24,8 @@ pub enum Invalid {
     Unknown {
         /// Its step.
         step: usize,
-        /// Its name.
-        viewpoint: ViewpointId,
+        /// Its name, as it was given.
+        viewpoint: String,
     },
     /// Two viewpoints in a row that are neither the same nor joined.
     #[error(
@@ -57,63 +57,70 @@ pub enum Invalid {
 /// All that keeps a trajectory from being scored; empty where nothing does.
 #[must_use]
 pub fn problems(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Vec<Invalid> {
-    Located::new(distances, demand, trajectory).err().unwrap_or_default()
+    let mut wrong = path(distances, demand).err().unwrap_or_default();
+    let names = trajectory.viewpoints.iter().map(ViewpointId::as_str);
+    wrong.extend(walked(distances, demand.reference.first(), names).err().into_iter().flatten());
+    wrong
 }
 
-/// A trajectory and the path that is demanded, as places of the scene.
-pub(super) struct Located {
-    /// The places of the trajectory; never empty.
-    pub(super) taken: Vec<usize>,
-    /// The annotated path; never empty, and its start is that of `taken`.
-    pub(super) reference: Vec<usize>,
-}
-
-impl Located {
-    pub(super) fn new(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Result<Self, Vec<Invalid>> {
-        let mut wrong = Vec::new();
-        let taken = places(distances, &trajectory.viewpoints, &mut wrong, |step, viewpoint| Invalid::Unknown {
-            step,
-            viewpoint,
-        });
-        let reference = places(distances, &demand.reference, &mut wrong, |step, viewpoint| {
-            Invalid::UnknownInReference { step, viewpoint }
-        });
-        match (trajectory.viewpoints.first(), demand.reference.first()) {
-            (Some(found), Some(start)) if found != start => {
-                wrong.push(Invalid::Start { found: found.clone(), expected: start.clone() });
-            }
-            (found, start) => {
-                wrong.extend(found.is_none().then_some(Invalid::Empty));
-                wrong.extend(start.is_none().then_some(Invalid::NoReference));
-            }
-        }
-        for (at, hop) in taken.windows(2).enumerate() {
-            // An unknown viewpoint is reported above; its hops would add nothing.
-            let is_told = hop.contains(&NOWHERE);
-            if !is_told && hop[0] != hop[1] && !distances.joins(hop[0], hop[1]) {
-                let [from, to] = [at, at + 1].map(|step| trajectory.viewpoints[step].clone());
-                wrong.push(Invalid::NoEdge { step: at + 1, from, to });
-            }
-        }
-        if wrong.is_empty() { Ok(Self { taken, reference }) } else { Err(wrong) }
+/// The places of the annotated path; never empty.
+pub(super) fn path(distances: &Distances, demand: &Demand) -> Result<Vec<usize>, Vec<Invalid>> {
+    if demand.reference.is_empty() {
+        return Err(vec![Invalid::NoReference]);
     }
+    let mut wrong = Vec::new();
+    let mut places = Vec::with_capacity(demand.reference.len());
+    for (step, viewpoint) in demand.reference.iter().enumerate() {
+        match distances.place(viewpoint.as_str()) {
+            Some(place) => places.push(place),
+            None => wrong.push(Invalid::UnknownInReference { step, viewpoint: viewpoint.clone() }),
+        }
+    }
+    if wrong.is_empty() { Ok(places) } else { Err(wrong) }
+}
+
+/// The places of a trajectory; never empty, and the first is `start`, where that is known.
+pub(super) fn walked<'n>(
+    distances: &Distances,
+    start: Option<&ViewpointId>,
+    names: impl Iterator<Item = &'n str> + Clone,
+) -> Result<Vec<usize>, Vec<Invalid>> {
+    let mut places = Vec::with_capacity(names.size_hint().0);
+    places.extend(names.clone().map(|name| distances.place(name).unwrap_or(NOWHERE)));
+    let starts = match (names.clone().next(), start) {
+        (Some(found), Some(start)) => found == start.as_str(),
+        (found, _) => found.is_some(),
+    };
+    let is_broken = |hop: &[usize]| hop[0] != hop[1] && !distances.joins(hop[0], hop[1]);
+    if starts && !places.contains(&NOWHERE) && !places.windows(2).any(is_broken) {
+        return Ok(places);
+    }
+    Err(wrong_with(distances, start, &places, &names.collect::<Vec<_>>()))
+}
+
+/// Every problem of a trajectory.
+fn wrong_with(distances: &Distances, start: Option<&ViewpointId>, places: &[usize], names: &[&str]) -> Vec<Invalid> {
+    let unknown = places.iter().zip(names).enumerate().filter(|(_, (place, _))| **place == NOWHERE);
+    let mut wrong: Vec<Invalid> =
+        unknown.map(|(step, (_, name))| Invalid::Unknown { step, viewpoint: (*name).to_owned() }).collect();
+    match (names.first(), start) {
+        (None, _) => wrong.push(Invalid::Empty),
+        (Some(found), Some(start)) if *found != start.as_str() => {
+            wrong.push(Invalid::Start { found: (*found).to_owned(), expected: start.clone() });
+        }
+        _ => {}
+    }
+    for (at, hop) in places.windows(2).enumerate() {
+        // An unknown viewpoint is told already; its hops would add nothing.
+        let is_told = hop.contains(&NOWHERE);
+        if !is_told && hop[0] != hop[1] && !distances.joins(hop[0], hop[1]) {
+            let [from, to] = [hop[0], hop[1]].map(|place| distances.name(place).clone());
+            wrong.push(Invalid::NoEdge { step: at + 1, from, to });
+        }
+    }
+    wrong
 }
 
 /// The place of a viewpoint that the scene does not have. No real place has this number, and none of these leaves this
 /// file.
 const NOWHERE: usize = usize::MAX;
-
-fn places(
-    distances: &Distances,
-    viewpoints: &[ViewpointId],
-    wrong: &mut Vec<Invalid>,
-    unknown: impl Fn(usize, ViewpointId) -> Invalid,
-) -> Vec<usize> {
-    let place = |(step, viewpoint): (usize, &ViewpointId)| {
-        distances.place(viewpoint).unwrap_or_else(|| {
-            wrong.push(unknown(step, viewpoint.clone()));
-            NOWHERE
-        })
-    };
-    viewpoints.iter().enumerate().map(place).collect()
-}

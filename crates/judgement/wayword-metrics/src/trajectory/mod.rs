@@ -1,6 +1,7 @@
 //! How well a trajectory over a viewpoint graph did what its episode demands.
 
 mod atlas;
+mod course;
 mod distances;
 mod fidelity;
 mod invalid;
@@ -12,6 +13,7 @@ mod testing;
 mod tests;
 
 pub use atlas::Atlas;
+pub use course::Course;
 pub use distances::Distances;
 pub use invalid::{Invalid, problems};
 pub use score::score;

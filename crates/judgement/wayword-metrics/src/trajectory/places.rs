@@ -17,27 +17,32 @@ impl Places {
     pub(super) fn new<'a>(names: impl Iterator<Item = &'a ViewpointId>) -> Self {
         let mut names: Vec<ViewpointId> = names.cloned().collect();
         names.sort_unstable();
-        Self { heads: names.iter().map(head).collect(), names }
+        Self { heads: names.iter().map(|name| head(name.as_str())).collect(), names }
     }
 
     pub(super) fn len(&self) -> usize {
         self.names.len()
     }
 
-    pub(super) fn find(&self, name: &ViewpointId) -> Option<usize> {
+    pub(super) fn name(&self, place: usize) -> &ViewpointId {
+        &self.names[place]
+    }
+
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
         let head = head(name);
         let first = self.heads.partition_point(|other| *other < head);
-        if self.names.get(first)? == name {
+        if self.names.get(first)?.as_str() == name {
             return Some(first);
         }
         // Names may begin alike.
         let alike = self.heads[first..].partition_point(|other| *other == head);
-        self.names[first..first + alike].binary_search(name).ok().map(|at| first + at)
+        let names = &self.names[first..first + alike];
+        names.binary_search_by(|other| other.as_str().cmp(name)).ok().map(|at| first + at)
     }
 }
 
-fn head(name: &ViewpointId) -> u64 {
-    let bytes = name.as_str().as_bytes();
+fn head(name: &str) -> u64 {
+    let bytes = name.as_bytes();
     let head = bytes.first_chunk().copied().unwrap_or_else(|| {
         let mut head = [0; 8];
         head[..bytes.len()].copy_from_slice(bytes);
@@ -62,9 +67,9 @@ mod tests {
             let places = Places::new(ids.iter());
             prop_assert_eq!(places.len(), names.len());
             for (at, name) in names.iter().enumerate() {
-                prop_assert_eq!(places.find(&ViewpointId::new(name).unwrap()), Some(at));
+                prop_assert_eq!(places.find(name), Some(at));
             }
-            prop_assert_eq!(places.find(&ViewpointId::new(&other).unwrap()).is_some(), names.contains(&other));
+            prop_assert_eq!(places.find(&other).is_some(), names.contains(&other));
         }
     }
 }

@@ -139,9 +139,9 @@ fn every_problem_is_told_and_nothing_is_scored() {
     let no_edge = |step, from, to| Invalid::NoEdge { step, from: id(from), to: id(to) };
     assert_eq!(
         wrong(&[0, 1], &[0, 2, 2, 9, 1, 4]),
-        [Invalid::Unknown { step: 3, viewpoint: id(9) }, no_edge(1, 0, 2), no_edge(5, 1, 4),]
+        [Invalid::Unknown { step: 3, viewpoint: id(9).to_string() }, no_edge(1, 0, 2), no_edge(5, 1, 4),]
     );
-    assert_eq!(wrong(&[0, 1], &[1]), [Invalid::Start { found: id(1), expected: id(0) }]);
+    assert_eq!(wrong(&[0, 1], &[1]), [Invalid::Start { found: id(1).to_string(), expected: id(0) }]);
     assert_eq!(wrong(&[0, 1], &[]), [Invalid::Empty]);
     assert_eq!(wrong(&[], &[0]), [Invalid::NoReference]);
     assert_eq!(wrong(&[0, 8], &[0]), [Invalid::UnknownInReference { step: 1, viewpoint: id(8) }]);

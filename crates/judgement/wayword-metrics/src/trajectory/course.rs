@@ -1,0 +1,113 @@
+//! An episode that many trajectories are scored by.
+
+use super::{
+    Demand, Distances, Grounding, Outcome, Score,
+    fidelity::Apart,
+    invalid::{Invalid, path, walked},
+};
+use std::collections::BTreeSet;
+use wayword_core::{ObjectId, ViewpointId};
+
+/// Nearer to the goal than this, strictly, is a success (R2R, `tasks/R2R/eval.py`, `error_margin`).
+const SUCCESS_M: f64 = 3.0;
+
+/// A demand for many trajectories: everything that no trajectory changes is looked up once.
+#[derive(Debug, Clone)]
+pub struct Course {
+    start: ViewpointId,
+    /// The annotated path; never empty.
+    path: Vec<usize>,
+    path_m: f64,
+    /// From the start to the goal; infinite where there is no way.
+    shortest_m: f64,
+    object: Option<ObjectId>,
+    /// The places from which the object can be seen, in order.
+    visible_from: Option<Vec<usize>>,
+}
+
+impl Course {
+    /// The course of a demand over the distances of its scene.
+    ///
+    /// # Errors
+    /// Each problem of the annotated path.
+    pub fn new(distances: &Distances, demand: &Demand) -> Result<Self, Vec<Invalid>> {
+        let path = path(distances, demand)?;
+        let (Some(start), [first, .., last] | [first @ last]) = (demand.reference.first(), &path[..]) else {
+            return Err(vec![Invalid::NoReference]);
+        };
+        let seen = demand.visible_from.as_ref().filter(|_| demand.object.is_some());
+        let places = |from: &BTreeSet<ViewpointId>| {
+            // Places are numbered in the order of their names, so these are in order too.
+            from.iter().filter_map(|viewpoint| distances.place(viewpoint.as_str())).collect()
+        };
+        Ok(Self {
+            start: start.clone(),
+            path_m: length_m(distances, &path),
+            shortest_m: distances.between(*first, *last),
+            object: demand.object.clone(),
+            visible_from: seen.map(places),
+            path,
+        })
+    }
+
+    /// The figures of a trajectory, as [`score`](super::score) gives them: its viewpoints and the object that the agent names. `distances`
+    /// are those that the course was made with.
+    ///
+    /// # Errors
+    /// Each problem of the trajectory.
+    pub fn score<'n>(
+        &self,
+        distances: &Distances,
+        names: impl Iterator<Item = &'n str> + Clone,
+        object: Option<&str>,
+    ) -> Result<Score, Vec<Invalid>> {
+        let taken = walked(distances, Some(&self.start), names)?;
+        let apart = Apart::new(distances, &taken, &self.path);
+        let length_m = length_m(distances, &taken);
+        let weight = efficiency(self.shortest_m, length_m);
+        let ndtw = apart.ndtw();
+        let outcome = |success, oracle_success| Outcome {
+            success,
+            oracle_success,
+            spl: if success { weight } else { 0.0 },
+            sdtw: if success { ndtw } else { 0.0 },
+        };
+        let error_m = apart.to_goal_m().last().unwrap_or(f64::INFINITY);
+        let oracle_m = apart.to_goal_m().fold(f64::INFINITY, f64::min);
+        let visible = self.visible_from.as_ref().map(|from| {
+            let sees = |place: &usize| from.binary_search(place).is_ok();
+            outcome(taken.last().is_some_and(sees), taken.iter().any(sees))
+        });
+        let grounding = self.object.as_ref().map(|target| {
+            let rgs = object == Some(target.as_str());
+            Grounding { rgs, rgspl: if rgs { weight } else { 0.0 } }
+        });
+        Ok(Score {
+            length_m,
+            navigation_error_m: error_m.is_finite().then_some(error_m),
+            oracle_error_m: oracle_m.is_finite().then_some(oracle_m),
+            distance: outcome(error_m < SUCCESS_M, oracle_m < SUCCESS_M),
+            visible,
+            grounding,
+            ndtw,
+            cls: apart.cls(length_m, self.path_m),
+        })
+    }
+}
+
+/// Sum of the distances between places in a row, metres.
+fn length_m(distances: &Distances, places: &[usize]) -> f64 {
+    places.windows(2).map(|hop| distances.between(hop[0], hop[1])).sum()
+}
+
+/// The shortest length as a share of the length that was walked, at most 1.
+fn efficiency(shortest_m: f64, length_m: f64) -> f64 {
+    let longer_m = shortest_m.max(length_m);
+    if longer_m.is_infinite() {
+        0.0
+    } else if longer_m == 0.0 {
+        1.0
+    } else {
+        shortest_m / longer_m
+    }
+}
