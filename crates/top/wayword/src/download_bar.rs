@@ -17,7 +17,7 @@ pub(crate) struct DownloadBar {
 
 impl DownloadBar {
     pub(crate) fn new(output: &Output) -> Self {
-        Self { output: *output, bar: output.bytes(), file: Mutex::default() }
+        Self { output: output.clone(), bar: output.bytes(), file: Mutex::default() }
     }
 }
 

@@ -3,7 +3,6 @@
 use std::{
     io::{self, ErrorKind},
     path::PathBuf,
-    process::ExitCode,
 };
 use wayword_core::{Failure, ModelError, PlatformError, platform::is_lost_disk};
 use wayword_formats::FormatError;
@@ -29,12 +28,6 @@ pub enum Exit {
     Lost = 7,
 }
 // clap itself exits with 2 when the command line is wrong.
-
-impl From<Exit> for ExitCode {
-    fn from(exit: Exit) -> Self {
-        ExitCode::from(exit as u8)
-    }
-}
 
 /// The hint for an error of the file system.
 fn advice(error: &io::Error) -> &'static str {

@@ -1,5 +1,7 @@
 //! Ctrl-C and SIGTERM: a command finishes the items that it works on, or ends at once, with exit code 6.
 //!
+//! Inside another program, that one catches the signals and calls [`ask`].
+//!
 //! On systems other than Unix the system ends the process, with its own exit code. Nothing is lost there either, because a kill leaves
 //! every file whole.
 
@@ -79,6 +81,20 @@ pub fn check() -> Result<(), Error> {
     if is_asked() { Err(Error::Interrupted) } else { Ok(()) }
 }
 
+/// Interrupts the running command as a first Ctrl-C does: it comes to its end. For a program that this one runs in.
+pub fn ask() {
+    ASKED.store(true, Ordering::Relaxed);
+    if let Some(ending) = lock().as_ref() {
+        (ending.stop)();
+    }
+}
+
+/// Forgets an interrupt, before the next command in the same process.
+pub fn forget() {
+    ASKED.store(false, Ordering::Relaxed);
+    process::start_again();
+}
+
 /// Interrupts that are not handled yet.
 pub struct Pending(#[cfg(unix)] Option<Signals>);
 
@@ -93,13 +109,13 @@ pub fn catch() -> Pending {
 /// Handles interrupts until the process ends, those since [`catch`] among them.
 #[cfg(unix)]
 pub fn listen(pending: Pending, output: &Output) {
-    let output = *output;
+    let output = output.clone();
     let Some(mut signals) = pending.0 else { return };
     thread::spawn(move || {
         for _ in signals.forever() {
             let again = ASKED.swap(true, Ordering::Relaxed);
             match lock().as_ref() {
-                Some(ending) if !again => finish(ending, output),
+                Some(ending) if !again => finish(ending, output.clone()),
                 _ => end_at_once(&output),
             }
         }

@@ -1,4 +1,5 @@
-//! The only place that writes to the terminal: results to standard output, messages and progress to standard error.
+//! The only place that writes to the terminal: results to standard output, messages and progress to standard error. Where this
+//! program runs inside another one, that one hears them instead.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // This file is the one place that prints.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
@@ -6,15 +7,38 @@ use serde::Serialize;
 use std::{
     fmt::{self, Display},
     io::{self, IsTerminal, Write},
+    sync::Arc,
     time::Duration,
 };
 use wayword_world::said::is_unseen;
 
 /// How the program prints.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone)]
 pub struct Output {
     json: bool,
     quiet: bool,
+    /// Who hears everything in place of the terminal.
+    listener: Option<Arc<dyn Listener>>,
+}
+
+/// A program that this one runs in.
+pub trait Listener: Send + Sync {
+    /// Takes a result, as JSON.
+    fn data(&self, json: String);
+
+    /// Takes a message.
+    fn say(&self, text: String);
+
+    /// Takes a bar, and can ask it from now on how far it is. It draws nothing by itself.
+    fn bar(&self, bar: &ProgressBar);
+}
+
+impl fmt::Debug for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { json, quiet, listener } = self;
+        let fields = ("json", json, "quiet", quiet, "is_heard", listener.is_some());
+        f.debug_struct("Output").field(fields.0, fields.1).field(fields.2, fields.3).field(fields.4, &fields.5).finish()
+    }
 }
 
 /// Longest error that is printed, characters, because parsers quote the whole line that they fail on.
@@ -58,7 +82,13 @@ impl Output {
     /// `json`: results as JSON; `quiet`: no messages, no progress.
     #[must_use]
     pub fn new(json: bool, quiet: bool) -> Self {
-        Self { json, quiet }
+        Self { json, quiet, listener: None }
+    }
+
+    /// Results as JSON, messages and bars for a listener; nothing on the terminal.
+    #[must_use]
+    pub fn heard_by(listener: Arc<dyn Listener>) -> Self {
+        Self { json: true, quiet: false, listener: Some(listener) }
     }
 
     /// Whether results are printed as JSON.
@@ -69,19 +99,23 @@ impl Output {
 
     /// Prints a result: `value` as JSON if that is wanted, else the text. A closed standard output is no error.
     pub fn data(&self, value: &impl Serialize, text: impl Display) {
-        let line = if self.json {
+        let json = || {
             // A file name that is not UTF-8 cannot be written as JSON.
             let json = serde_json::to_string(value);
-            tame_json(&json.unwrap_or_else(|error| format!("{{\"error\":{:?}}}", error.to_string())))
-        } else {
-            tame(&text.to_string())
+            json.unwrap_or_else(|error| format!("{{\"error\":{:?}}}", error.to_string()))
         };
+        if let Some(listener) = &self.listener {
+            return listener.data(json());
+        }
+        let line = if self.json { tame_json(&json()) } else { tame(&text.to_string()) };
         let _ = writeln!(io::stdout(), "{}", line.trim_end());
     }
 
     /// Prints a message.
     pub fn say(&self, text: impl Display) {
-        if !self.quiet {
+        if let Some(listener) = &self.listener {
+            listener.say(tame(&text.to_string()));
+        } else if !self.quiet {
             eprintln!("{}", tame(&text.to_string()));
         }
     }
@@ -106,7 +140,7 @@ impl Output {
 
     /// Prints how far something is, where there is no terminal that shows a bar.
     pub fn in_lines(&self, text: impl Display) {
-        if !io::stderr().is_terminal() {
+        if self.listener.is_none() && !io::stderr().is_terminal() {
             self.say(text);
         }
     }
@@ -120,8 +154,11 @@ impl Output {
 
     fn bar(&self, total: u64, template: &str) -> ProgressBar {
         let bar = ProgressBar::new(total);
-        if self.quiet || !io::stderr().is_terminal() {
+        if self.listener.is_some() || self.quiet || !io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Some(listener) = &self.listener {
+            listener.bar(&bar);
         }
         bar.with_style(style(template))
     }

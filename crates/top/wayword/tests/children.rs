@@ -142,7 +142,7 @@ fn wait_for(file: &Path) {
 fn the_program() {
     let Ok(role) = std::env::var("WAYWORD_TEST_ROLE") else { return };
     let start = || {
-        let guard = Some(PathBuf::from(env!("CARGO_BIN_EXE_wayword")));
+        let guard = Some(PathBuf::from(env!("CARGO_BIN_EXE_wayword")).into());
         let options = ProcessOptions { guard, ..ProcessOptions::read(Path::new("world.json")).unwrap() };
         ProcessPlatform::start(options, Arc::new(|_: &str| ()))
     };

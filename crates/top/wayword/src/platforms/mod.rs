@@ -1,5 +1,6 @@
 //! Opens platforms by their names.
 
+mod inside;
 #[cfg(feature = "live")]
 mod live;
 mod remembering;
@@ -13,6 +14,7 @@ use wayword_house::HousePlatform;
 use wayword_platforms::{matterport::Matterport, process};
 use wayword_recording::RecordingPlatform;
 
+pub use inside::{forget_inside, put_inside};
 pub use remembering::Remembering;
 
 /// Number of scenes whose surveys a command keeps in memory.
@@ -182,8 +184,12 @@ pub fn open_named(
     }
 }
 
-/// A platform that is another program. If this program is killed, a second copy of it ends that one.
+/// A platform that is another program, or an object of the program that this one runs in. If this program is killed, a second
+/// copy of it ends the other program.
 fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
+    if let Some(options) = inside::find(file)? {
+        return Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?));
+    }
     let options = process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read(file)? };
     Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
 }

@@ -1,11 +1,11 @@
-//! A running child: its pipes, and one request at a time.
+//! A running child: its pipes, and one request at a time. A world within this process is asked in the same way, by a thread.
 
 use super::{
     answer::{Answer, MAX_LINE_BYTES, answer},
     fault::Fault,
     group::Group,
     guard::FAREWELL,
-    options::ProcessOptions,
+    options::{Inside, ProcessOptions},
     stderr::LastWords,
 };
 use serde_json::{Value, json};
@@ -27,25 +27,30 @@ const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// A child process. When it is dropped, its input is closed, which asks it to end; it is killed if it does not end. The
 /// processes that it started are killed in either case.
 pub(crate) struct Running {
-    group: Group,
+    /// `None` for a world within this process.
+    group: Option<Group>,
     /// To the thread that writes: a child that does not read must not block the caller. `None` once the child has to
     /// end.
     requests: Option<SyncSender<Vec<u8>>>,
     /// From the thread that reads. It waits until a line is received, so a flood of lines stays in the pipe.
     lines: Receiver<Line>,
     last_words: LastWords,
-    listener: JoinHandle<()>,
+    /// Hears its error output; `None` for a world within this process.
+    listener: Option<JoinHandle<()>>,
 }
 
 impl Running {
     /// Starts the program, without sending a request.
     pub(crate) fn start(options: &ProcessOptions, hear: &Hear) -> Result<Self, Fault> {
+        if let Some(inside) = &options.inside {
+            return Ok(Self::inside(inside.clone()));
+        }
         let mut command = Command::new(&options.program);
         command.args(&options.arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         if let Some(folder) = &options.folder {
             command.current_dir(folder);
         }
-        let started = Group::start(&mut command, options.guard.as_deref(), hear);
+        let started = Group::start(&mut command, options.guard.as_ref(), hear);
         let (group, (stdin, stdout, stderr)) = started.map_err(Fault::NotStarted)?;
         let (requests, to_write) = sync_channel::<Vec<u8>>(1);
         let (read, lines) = sync_channel(0);
@@ -58,12 +63,26 @@ impl Running {
                 words.listen(pipe, &hear);
             }
         });
-        Ok(Self { group, requests: Some(requests), lines, last_words, listener })
+        Ok(Self { group: Some(group), requests: Some(requests), lines, last_words, listener: Some(listener) })
+    }
+
+    /// Asks a world within this process, in a thread: if it hangs, its caller does not.
+    fn inside(world: Inside) -> Self {
+        let (requests, to_answer) = sync_channel::<Vec<u8>>(1);
+        let (answered, lines) = sync_channel(0);
+        thread::spawn(move || {
+            while let Ok(request) = to_answer.recv() {
+                if answered.send(world.answer(&request)).is_err() {
+                    return;
+                }
+            }
+        });
+        Self { group: None, requests: Some(requests), lines, last_words: LastWords::default(), listener: None }
     }
 
     /// Whether it has ended.
     pub(crate) fn has_ended(&self) -> bool {
-        self.group.ends_within(Duration::ZERO)
+        self.group.as_ref().is_some_and(|group| group.ends_within(Duration::ZERO))
     }
 
     /// Sends a request and waits for the answer.
@@ -113,10 +132,11 @@ impl Running {
 
     /// The fault that the end of its output means.
     fn end(&self) -> Fault {
-        if !self.group.ends_within(AFTERMATH) {
+        let Some(group) = &self.group else { return Fault::Closed };
+        if !group.ends_within(AFTERMATH) {
             return Fault::Closed;
         }
-        Fault::Died(self.group.end().map_or_else(|| "exit status unknown".to_owned(), |status| status.to_string()))
+        Fault::Died(group.end().map_or_else(|| "exit status unknown".to_owned(), |status| status.to_string()))
     }
 
     fn half(&self, line: &[u8]) -> Fault {
@@ -131,11 +151,14 @@ impl Running {
 
     /// Kills it with its group, and returns the last lines of its error output.
     pub(crate) fn bury(self) -> String {
-        self.group.end();
+        if let Some(group) = &self.group {
+            group.end();
+        }
         // Its last lines may not have arrived yet. The wait is bounded, because a process that left the group may keep
         // the pipe open for ever.
         let mut waited = Duration::ZERO;
-        while !self.listener.is_finished() && waited < AFTERMATH {
+        let hears = |running: &Self| running.listener.as_ref().is_some_and(|listener| !listener.is_finished());
+        while hears(&self) && waited < AFTERMATH {
             thread::sleep(Duration::from_millis(5));
             waited += Duration::from_millis(5);
         }
@@ -146,8 +169,10 @@ impl Running {
 impl Drop for Running {
     fn drop(&mut self) {
         self.requests = None;
-        self.group.ends_within(FAREWELL);
-        self.group.end();
+        if let Some(group) = &self.group {
+            group.ends_within(FAREWELL);
+            group.end();
+        }
     }
 }
 

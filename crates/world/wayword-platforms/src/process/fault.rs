@@ -55,7 +55,7 @@ impl Fault {
             Self::LongLine(_) | Self::Nonsense { .. } | Self::WrongId { .. } => {
                 "only answers may go to standard output, one JSON object per line; print all else to standard error"
             }
-            Self::Version(_) => "use the wayword_platform.py that comes with this version of Wayword",
+            Self::Version(_) => "use the platform.py that comes with this version of Wayword",
             Self::Frame(_) => {
                 "convert to this frame in the world program, and name it in the greeting: see docs/PROCESS.md"
             }

@@ -3,10 +3,9 @@
 //! The system may give a group's number to another group as soon as no process is in it. So the group is killed first
 //! and its leader is reaped afterwards, because a leader that has ended but was not reaped keeps the number.
 
-use super::guard::Guard;
+use super::guard::{Guard, Guardian};
 use std::{
     io,
-    path::Path,
     process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus},
     sync::{Arc, Mutex, MutexGuard, PoisonError, Weak},
     thread,
@@ -48,6 +47,11 @@ pub fn end_all() {
     }
 }
 
+/// Lets children start again after [`end_all`], in a program that did not end.
+pub fn start_again() {
+    lock(&LIVING).is_closed = false;
+}
+
 /// Our ends of a child's three pipes.
 pub(crate) type Pipes = (Option<ChildStdin>, Option<ChildStdout>, Option<ChildStderr>);
 
@@ -68,7 +72,7 @@ impl Group {
     ///
     /// # Errors
     /// If the command cannot be started, or this program is ending.
-    pub(crate) fn start(command: &mut Command, guard: Option<&Path>, hear: &Hear) -> io::Result<(Self, Pipes)> {
+    pub(crate) fn start(command: &mut Command, guard: Option<&Guardian>, hear: &Hear) -> io::Result<(Self, Pipes)> {
         let guard = guard.and_then(|program| match Guard::start(program) {
             Ok(guard) => Some(guard),
             Err(error) => {

@@ -7,10 +7,11 @@
 
 use std::{
     env,
-    ffi::OsStr,
+    ffi::OsString,
     io,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
+    sync::OnceLock,
     time::Duration,
 };
 
@@ -19,22 +20,41 @@ pub(crate) const FAREWELL: Duration = Duration::from_millis(500);
 /// The only argument of a guard.
 const ROLE: &str = "guard-children";
 
+/// How this program is started again, where it is no executable of its own.
+static THIS_PROGRAM: OnceLock<Guardian> = OnceLock::new();
+
+/// A program that can be a guard: with [`ROLE`] as its last argument it calls [`stand_guard_if_asked`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Guardian {
+    /// The executable.
+    pub program: PathBuf,
+    /// What comes before the role.
+    pub arguments: Vec<OsString>,
+}
+
+impl From<PathBuf> for Guardian {
+    /// An executable that needs no argument but the role.
+    fn from(program: PathBuf) -> Self {
+        Self { program, arguments: Vec::new() }
+    }
+}
+
 /// A running guard. When it is dropped, it is killed.
 pub(crate) struct Guard(Child);
 
 impl Guard {
     /// Starts a program that calls [`stand_guard_if_asked`], as the leader of a group of its own.
     #[cfg(unix)]
-    pub(crate) fn start(program: &Path) -> io::Result<Self> {
-        let mut command = Command::new(program);
+    pub(crate) fn start(guardian: &Guardian) -> io::Result<Self> {
+        let mut command = Command::new(&guardian.program);
         // Another program may wait for the end of our outputs, so the guard must not hold them open.
-        command.arg(ROLE).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
+        command.args(&guardian.arguments).arg(ROLE).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command.spawn().map(Self)
     }
 
     #[cfg(not(unix))]
-    pub(crate) fn start(_: &Path) -> io::Result<Self> {
+    pub(crate) fn start(_: &Guardian) -> io::Result<Self> {
         Err(io::ErrorKind::Unsupported.into())
     }
 
@@ -59,21 +79,28 @@ impl Drop for Guard {
 
 /// This program, for use as the guard of its children (`ProcessOptions::guard`). `None` on systems without guards.
 #[must_use]
-pub fn this_program() -> Option<PathBuf> {
+pub fn this_program() -> Option<Guardian> {
     // On Linux this path works even after the program was replaced or deleted.
     let own = Path::new("/proc/self/exe");
-    match cfg!(unix) {
-        true if own.exists() => Some(own.to_owned()),
-        true => env::current_exe().ok(),
-        false => None,
+    match (cfg!(unix), THIS_PROGRAM.get()) {
+        (true, Some(known)) => Some(known.clone()),
+        (true, None) if own.exists() => Some(own.to_owned().into()),
+        (true, None) => env::current_exe().ok().map(Guardian::from),
+        (false, _) => None,
     }
 }
 
-/// Must be called at the very start of `main` in a program that is used as a guard. If this process was started as a
-/// guard, the function serves as one and does not return.
-pub fn stand_guard_if_asked() {
-    let mut arguments = env::args_os().skip(1);
-    let is_asked = arguments.next().is_some_and(|first| first == OsStr::new(ROLE)) && arguments.next().is_none();
+/// Says how this program is started again, where its executable is another program: an interpreter that it is a module of.
+/// Only the first call counts.
+pub fn this_program_is(guardian: Guardian) {
+    // A second call says the same, because a process has one interpreter.
+    let _ = THIS_PROGRAM.set(guardian);
+}
+
+/// Must be called at the very start of a program that is used as a guard, with its arguments (without its own name). If this
+/// process was started as a guard, the function serves as one and does not return.
+pub fn stand_guard_if_asked(arguments: &[OsString]) {
+    let is_asked = matches!(arguments, [only] if only == ROLE);
     #[cfg(unix)]
     if is_asked && rustix::process::getpgrp() == rustix::process::getpid() {
         stand();

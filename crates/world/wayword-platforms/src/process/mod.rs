@@ -1,8 +1,8 @@
 //! Any simulator, in any language, as a child process.
 //!
 //! Wayword writes one request per line to the child's standard input and reads one answer per line from its standard
-//! output. `docs/PROCESS.md` describes requests and answers, and `python/wayword_platform.py` implements the child's
-//! side in Python. The child converts to Wayword's frame (z up, metres, radians clockwise from +y) and names that frame
+//! output. `docs/PROCESS.md` describes requests and answers, and `python/wayword/platform.py` implements the child's
+//! side in Python. A world within this process ([`Inside`]) is asked with the same lines. The child converts to Wayword's frame (z up, metres, radians clockwise from +y) and names that frame
 //! in its greeting.
 //!
 //! The child is not trusted: lines, pictures, counts and times are bounded. If it dies, hangs, floods its output or
@@ -28,8 +28,8 @@ mod platform;
 mod protocol;
 mod stderr;
 
-pub use group::end_all;
-pub use guard::{stand_guard_if_asked, this_program};
-pub use options::ProcessOptions;
+pub use group::{end_all, start_again};
+pub use guard::{Guardian, stand_guard_if_asked, this_program, this_program_is};
+pub use options::{Inside, ProcessOptions};
 pub use platform::ProcessPlatform;
 pub use protocol::{Offer, PROTOCOL, World};

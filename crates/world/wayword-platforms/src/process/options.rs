@@ -1,13 +1,16 @@
 //! Which program to start, and how long to wait for it.
 
+use super::{answer::MAX_LINE_BYTES, guard::Guardian};
 use crate::matterport::read;
 use serde::Deserialize;
 use std::{
+    fmt,
     path::{Path, PathBuf},
+    sync::Arc,
     time::Duration,
 };
 use wayword_core::PlatformError;
-use wayword_world::said::plain;
+use wayword_world::said::{Line, plain};
 
 const MAX_FILE_BYTES: u64 = 1 << 20;
 const HINT: &str = "a world file holds a JSON object with \"command\": [PROGRAM, ARGUMENT, ...], see docs/PROCESS.md";
@@ -39,6 +42,8 @@ pub struct ProcessOptions {
     pub answer_within: Duration,
     /// How often the child may be restarted. Each 200 answers allow one more restart, but never more than this number.
     pub restarts: u32,
+    /// A world within this process, which is asked in place of a program. `program` is then the name that errors give it.
+    pub inside: Option<Inside>,
     /// A program that calls [`stand_guard_if_asked`](super::stand_guard_if_asked) at its very start:
     /// [`this_program`](super::this_program), if it does so. It is started beside the child. If this program is killed,
     /// or exits without dropping the platform, the guard ends the child and the processes that the child started.
@@ -46,7 +51,36 @@ pub struct ProcessOptions {
     /// Without a guard, and on systems other than Unix, only the end of its input asks the child to end in this case,
     /// and a child that hangs continues to run. A process that leaves the child's group (`setsid`, a daemon) is never
     /// ended.
-    pub guard: Option<PathBuf>,
+    pub guard: Option<Guardian>,
+}
+
+/// A world within this process: an object of the interpreter that this program runs in.
+#[derive(Clone)]
+pub struct Inside(Arc<dyn Fn(&[u8]) -> Vec<u8> + Send + Sync>);
+
+impl Inside {
+    /// A world that answers a request with a line, as `docs/PROCESS.md` says, both without the end of the line.
+    pub fn new(answers: impl Fn(&[u8]) -> Vec<u8> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(answers))
+    }
+
+    /// The answer to a line that was sent.
+    pub(crate) fn answer(&self, request: &[u8]) -> Line {
+        let answer = (self.0)(request.trim_ascii_end());
+        if answer.len() > MAX_LINE_BYTES { Line::TooLong } else { Line::Whole(answer) }
+    }
+}
+
+impl fmt::Debug for Inside {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Inside")
+    }
+}
+
+impl PartialEq for Inside {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }
 
 /// A world file.
@@ -69,6 +103,12 @@ struct WorldFile {
 }
 
 impl ProcessOptions {
+    /// A world within this process, with the default settings. Errors give it this name.
+    #[must_use]
+    pub fn inside(name: &str, world: Inside) -> Self {
+        Self { inside: Some(world), ..Self::new(name) }
+    }
+
     /// A program without arguments, with the default settings: pictures of 640x480, viewpoints 1 m apart, 3 minutes to
     /// start, 1 minute to answer, 5 restarts, no guard.
     #[must_use]
@@ -84,6 +124,7 @@ impl ProcessOptions {
             start_within: Duration::from_secs(180),
             answer_within: Duration::from_secs(60),
             restarts: 5,
+            inside: None,
             guard: None,
         }
     }

@@ -1,16 +1,17 @@
 //! The figures of a submission: means over instructions, as the official evaluators give them, with intervals.
 
-use super::handed_in::{All, Scored};
-use crate::{cli::Evaluate, count::count};
+use super::Covered;
+use crate::{
+    cli::Evaluate,
+    count::count,
+    judge::{LEVEL, Scores},
+};
 use serde::Serialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fmt,
 };
-use wayword_metrics::{Estimate, Metric, Rule, clustered_interval};
-
-/// Confidence level of the intervals.
-const LEVEL: f64 = 0.95;
+use wayword_metrics::{Estimate, Metric, Rule};
 
 /// Figures that depend on the rule of success; the others are the same under every rule.
 const BY_RULE: [Metric; 4] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl, Metric::Sdtw];
@@ -68,29 +69,28 @@ struct Figure {
 }
 
 impl Report {
-    pub(super) fn new(args: &Evaluate, all: &All<'_>, rules: &[Rule], drawn: Drawn) -> Self {
-        let scored = all.scored.as_slice();
-        let has_objects = scored.iter().any(|scored| scored.score.grounding.is_some());
+    pub(super) fn new(args: &Evaluate, scores: &Scores, covered: Covered, rules: &[Rule], drawn: Drawn) -> Self {
+        let has_objects = scores.rows().iter().any(|row| row.score.grounding.is_some());
         let by_rule = |rule: &Rule| ByRule {
             rule: *rule,
             words: words(*rule, has_objects),
-            figures: figures(scored, *rule, drawn, |metric| BY_RULE.contains(&metric)),
+            figures: figures(scores, *rule, drawn, |metric| BY_RULE.contains(&metric)),
         };
         Self {
             submission: args.submission.display().to_string(),
             episodes: args.episodes.display().to_string(),
-            instructions: scored.len(),
-            items: scored.iter().map(|scored| scored.item).collect::<BTreeSet<_>>().len(),
-            paths: scored.iter().map(|scored| &scored.path).collect::<BTreeSet<_>>().len(),
-            of_instructions: all.instructions,
-            of_items: all.items,
+            instructions: scores.rows().len(),
+            items: scores.items().collect::<BTreeSet<_>>().len(),
+            paths: scores.paths().collect::<BTreeSet<_>>().len(),
+            of_instructions: covered.instructions,
+            of_items: covered.items,
             limit: args.limit,
-            left_out: all.left_out,
-            objects_named: scored.iter().filter(|scored| scored.names_object).count(),
+            left_out: covered.left_out,
+            objects_named: scores.rows().iter().filter(|row| row.names_object).count(),
             level: LEVEL,
             drawn,
             rules: rules.iter().map(by_rule).collect(),
-            whatever_the_rule: figures(scored, Rule::Distance, drawn, |metric| !BY_RULE.contains(&metric)),
+            whatever_the_rule: figures(scores, Rule::Distance, drawn, |metric| !BY_RULE.contains(&metric)),
         }
     }
 }
@@ -107,17 +107,10 @@ fn words(rule: Rule, has_objects: bool) -> &'static str {
 }
 
 /// The figures that at least one instruction has.
-fn figures(
-    scored: &[Scored<'_>],
-    rule: Rule,
-    drawn: Drawn,
-    is_wanted: impl Fn(Metric) -> bool,
-) -> BTreeMap<Metric, Figure> {
+fn figures(scores: &Scores, rule: Rule, drawn: Drawn, is_wanted: impl Fn(Metric) -> bool) -> BTreeMap<Metric, Figure> {
     let figure = |metric: Metric| {
-        let values: Vec<(&str, f64)> =
-            scored.iter().filter_map(|scored| Some((scored.path.as_str(), scored.score.get(metric, rule)?))).collect();
-        let estimate = clustered_interval(&values, drawn.resamples, LEVEL, drawn.seed)?;
-        Some((metric, Figure { estimate, left_out: scored.len() - values.len() }))
+        let estimate = scores.estimate(metric, rule, drawn.resamples, drawn.seed)?;
+        Some((metric, Figure { left_out: scores.rows().len() - estimate.values, estimate }))
     };
     Metric::ALL.into_iter().filter(|metric| is_wanted(*metric)).filter_map(figure).collect()
 }
@@ -190,9 +183,9 @@ mod tests {
     use super::*;
     use wayword_metrics::{Outcome, Score};
 
-    fn scored(navigation_error_m: Option<f64>) -> Scored<'static> {
+    fn score(navigation_error_m: Option<f64>) -> Score {
         let nothing = Outcome { success: false, oracle_success: false, spl: 0.0, sdtw: 0.0 };
-        let score = Score {
+        Score {
             length_m: 2.0,
             navigation_error_m,
             oracle_error_m: navigation_error_m,
@@ -201,13 +194,12 @@ mod tests {
             grounding: None,
             ndtw: 0.5,
             cls: 0.5,
-        };
-        Scored { instr_id: "1_0".to_owned(), item: "1", path: "a/1".to_owned(), names_object: false, score }
+        }
     }
 
     #[test]
     fn what_has_no_figure_is_left_out_of_the_mean_and_counted() {
-        let all = [scored(Some(4.0)), scored(None), scored(Some(6.0))];
+        let all = Scores::of_one_path([Some(4.0), None, Some(6.0)].map(score).into());
         let found = figures(&all, Rule::Distance, Drawn { resamples: 100, seed: 0 }, |_| true);
         let error = &found[&Metric::NavigationErrorM];
         assert!((error.estimate.mean - 5.0).abs() < 1e-12);

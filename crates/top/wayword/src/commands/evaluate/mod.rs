@@ -1,24 +1,36 @@
 //! `wayword evaluate`.
 
 mod figures;
-mod handed_in;
 mod refusal;
 
 use crate::{
     cli::Evaluate as Args,
-    demands::Demands,
     episodes,
     error::{Error, Exit},
+    judge::{Judge, Problems, Scores},
     output::Output,
     platforms,
     run::write_whole,
 };
 use figures::{Drawn, Report};
-use handed_in::{Scored, score_all};
 use refusal::{Refusal, no_submission};
-use std::{fs, path::Path};
-use wayword_formats::submission;
+use std::{collections::BTreeSet, fs, path::Path};
+use wayword_core::ViewpointId;
+use wayword_formats::{
+    Episode,
+    submission::{self, Reading, instr_id},
+};
 use wayword_metrics::Rule;
+
+/// How much of the episodes a submission was scored on.
+struct Covered {
+    /// All instructions, with or without a trajectory.
+    instructions: usize,
+    /// All items.
+    items: usize,
+    /// Trajectories for items beyond the limit.
+    left_out: usize,
+}
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     refuse_to_overwrite(args)?;
@@ -35,26 +47,50 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     if let Some(error) = no_submission(&args.submission, &reading) {
         return Err(error);
     }
-    let all = match score_all(episodes, beyond, reading, &Demands::new(platform.as_ref()), args.partial)? {
-        Ok(all) => all,
+    let judge = Judge::new(episodes, platform.as_ref())?;
+    let (scores, left_out) = match scored(&judge, beyond, &reading, args.partial) {
+        Ok(scored) => scored,
         Err(problems) => {
             let refusal = Refusal::new(&args.submission, problems);
             output.data(&refusal, &refusal);
             return Err(refusal.into_error());
         }
     };
-    if all.scored.is_empty() {
+    if scores.rows().is_empty() {
         let problem = format!("{}: no instruction has a trajectory; nothing was scored", args.submission.display());
         return Err(Error::usage(problem, "check that the submission and --episodes belong to the same split"));
     }
-    let rules = rules(args, &all.scored)?;
+    let rules = rules(args, &scores)?;
     if let Some(file) = &args.per_item {
-        write_each(file, &all.scored)?;
+        write_each(file, &scores)?;
     }
     let drawn = Drawn { resamples: args.resamples as usize, seed: args.seed };
-    let report = Report::new(args, &all, &rules, drawn);
+    let covered = Covered { instructions: judge.instructions(), items: judge.items(), left_out };
+    let report = Report::new(args, &scores, covered, &rules, drawn);
     output.data(&report, &report);
     Ok(Exit::Done)
+}
+
+/// The figures of a submission, and how many of its trajectories are for the items `beyond` the limit.
+fn scored(judge: &Judge, beyond: &[Episode], reading: &Reading, is_partial: bool) -> Result<(Scores, usize), Problems> {
+    let names = |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
+    let beyond: BTreeSet<String> = beyond.iter().flat_map(|episode| -> Vec<String> { names(episode) }).collect();
+    let mut scoring = judge.begin();
+    let mut left_out = 0;
+    for submitted in &reading.submitted {
+        if beyond.contains(&submitted.instr_id) {
+            left_out += 1;
+            continue;
+        }
+        let viewpoints = submitted.trajectory.iter().map(|posed| ViewpointId::as_str(&posed.viewpoint));
+        scoring.take(&submitted.instr_id, viewpoints, submitted.object.as_ref().map(|object| object.as_str()));
+    }
+    for flawed in reading.flawed.iter().filter(|flawed| !beyond.contains(*flawed)) {
+        scoring.take_flawed(flawed);
+    }
+    // After the place where the file broke off a trajectory may be there all the same.
+    let scores = scoring.end(Problems::of_file(&reading.problems), is_partial || !reading.is_whole)?;
+    Ok((scores, left_out))
 }
 
 /// Refuses a `--per-item` file that is one of the inputs, under whatever name.
@@ -73,8 +109,8 @@ fn refuse_to_overwrite(args: &Args) -> Result<(), Error> {
 }
 
 /// The rules of success that are asked for and can be applied.
-fn rules(args: &Args, scored: &[Scored<'_>]) -> Result<Vec<Rule>, Error> {
-    let has_visible = scored.iter().any(|scored| scored.score.visible.is_some());
+fn rules(args: &Args, scores: &Scores) -> Result<Vec<Rule>, Error> {
+    let has_visible = scores.has(Rule::Visible);
     match args.rule.map(Rule::from) {
         Some(Rule::Visible) if !has_visible => Err(Error::usage(
             format!("--rule visible: no item of {} names an object whose place is known", args.episodes.display()),
@@ -86,10 +122,10 @@ fn rules(args: &Args, scored: &[Scored<'_>]) -> Result<Vec<Rule>, Error> {
     }
 }
 
-fn write_each(file: &Path, scored: &[Scored<'_>]) -> Result<(), Error> {
+fn write_each(file: &Path, scores: &Scores) -> Result<(), Error> {
     let mut lines = String::new();
-    for scored in scored {
-        let line = serde_json::to_string(scored).map_err(|error| Error::io(file, "write")(error.into()))?;
+    for line in scores.lines() {
+        let line = serde_json::to_string(&line).map_err(|error| Error::io(file, "write")(error.into()))?;
         lines.push_str(&line);
         lines.push('\n');
     }
