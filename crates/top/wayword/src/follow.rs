@@ -22,13 +22,13 @@ use wayword_world::survey;
 /// A scene that was surveyed.
 pub(crate) struct KnownScene {
     /// Its viewpoints.
-    survey: Survey,
+    pub(crate) survey: Survey,
     /// What is listed in it, for the checks.
     pub(crate) listed: Arc<wayword_checks::Building>,
     /// The same for whoever describes a target.
     pub(crate) listing: Listing,
     /// The same for the follower.
-    followed: Building,
+    pub(crate) followed: Building,
 }
 
 /// The scenes that were surveyed last.
@@ -195,7 +195,7 @@ impl<'a> Followed<'a> {
 }
 
 /// What a text tells a walker; an error, with the reason, where nobody could follow it.
-fn guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
+pub(crate) fn guide(text: &str, tag: Option<&str>) -> Result<Guide, &'static str> {
     followable(text, tag).map(|(guide, _)| guide)
 }
 

@@ -2,7 +2,8 @@
 //! program runs inside another one, that one hears them instead.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // This file is the one place that prints.
 
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+pub use indicatif::ProgressBar;
+use indicatif::{HumanDuration, ProgressDrawTarget, ProgressState, ProgressStyle};
 use serde::Serialize;
 use std::{
     fmt::{self, Display},

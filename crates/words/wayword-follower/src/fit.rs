@@ -8,6 +8,9 @@ use crate::{
     weights::Weights,
 };
 
+/// Most steps of a text times walks. A text of more steps should not be followed, because it would fill the memory.
+pub const MOST_WORK: usize = 2_000_000;
+
 /// How well an instruction fits the walks of a tree.
 #[derive(Debug, Clone)]
 pub struct Fit {

@@ -25,7 +25,7 @@ mod tree;
 mod weights;
 
 pub use building::{Building, Place};
-pub use fit::Fit;
+pub use fit::{Fit, MOST_WORK};
 pub use guide::{Guide, Trial};
 pub use posterior::{best, shares};
 pub use tree::{Prior, Tree};

@@ -4,7 +4,7 @@
 use super::{Start, Walked, baselines::follow};
 use crate::{directions::beginning_of, error::WalkError};
 use wayword_core::{Survey, ViewpointGraph, ViewpointId};
-use wayword_follower::{Building, Fit, Guide, Prior, Tree, Trial, Weights, best};
+use wayword_follower::{Building, Fit, Guide, MOST_WORK, Prior, Tree, Trial, Weights, best};
 
 /// A scene that is known as a whole.
 #[derive(Debug)]
@@ -22,9 +22,6 @@ impl Surveyed {
         Self { building: Building::of(survey), viewpoints }
     }
 }
-
-/// Most steps of a text times walks. A text of more steps is not followed, because it would fill the memory.
-const MOST_WORK: usize = 2_000_000;
 
 /// A reader at a start, with all walks that it thinks of.
 #[derive(Debug)]

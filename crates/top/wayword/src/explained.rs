@@ -1,0 +1,122 @@
+//! An error in parts, for a program that this one runs in.
+
+use crate::error::Error;
+use std::{fmt::Display, path::Path};
+use wayword_core::PlatformError;
+use wayword_formats::FormatError;
+
+/// What comes before a hint in the errors of this program.
+const HINT: &str = "\nhint: ";
+
+/// An error in parts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Explained {
+    /// Its kind: one of the names that [`kind`] gives.
+    pub kind: &'static str,
+    /// What is wrong.
+    pub what: String,
+    /// Where: the file, and in it the item and field; or the scene.
+    pub place: Option<String>,
+    /// What to do.
+    pub hint: Option<String>,
+}
+
+impl Explained {
+    /// The parts of an error.
+    #[must_use]
+    pub fn of(error: &Error) -> Self {
+        let kind = kind(error);
+        let at = |place: &Path, what: &dyn Display, hint: &str| Self {
+            kind,
+            what: what.to_string(),
+            place: Some(place.display().to_string()),
+            hint: (!hint.is_empty()).then(|| hint.to_owned()),
+        };
+        match error {
+            Error::Format(FormatError::Document { file, problem, hint }) => at(file, problem, hint),
+            Error::Format(FormatError::Item(wrong)) => {
+                let id = wrong.id.as_ref().map_or_else(String::new, |id| format!(" (id {id})"));
+                let place = format!("{}: {}{id}: field \"{}\"", wrong.file.display(), wrong.place, wrong.field);
+                at(place.as_ref(), &wrong.problem, wrong.hint)
+            }
+            Error::Platform(PlatformError::File { file, reason, hint }) => at(file, reason, hint),
+            Error::Platform(PlatformError::NoFile { file, hint }) => at(file, &"there is no such file", hint),
+            Error::Platform(PlatformError::Lost { world, reason, hint }) => at(world.as_ref(), reason, hint),
+            Error::Platform(PlatformError::UnknownScene { scene, hint }) => {
+                at(scene.as_ref(), &"there is no such scene", hint)
+            }
+            Error::Platform(PlatformError::NoSuchPath { scene, request, hint }) => {
+                at(scene.as_str().as_ref(), &format!("the scene has no path with {request}"), hint)
+            }
+            error => {
+                let told = error.to_string();
+                let (what, hint) = told.split_once(HINT).map_or((&*told, None), |(what, hint)| (what, Some(hint)));
+                let place = file_of(error).map(|file| file.display().to_string());
+                Self { kind, what: what.to_owned(), place, hint: hint.map(str::to_owned) }
+            }
+        }
+    }
+}
+
+/// The file or folder that an error is about.
+fn file_of(error: &Error) -> Option<&Path> {
+    match error {
+        Error::Io { path, .. } => Some(path),
+        Error::Format(FormatError::Io { file, .. }) => Some(file),
+        Error::Busy(folder) | Error::BusyElsewhere { folder, .. } => Some(folder),
+        Error::ChangedScene { record, .. } => Some(record),
+        _ => None,
+    }
+}
+
+/// The kind of an error: `input`, `file`, `format`, `platform`, `lost`, `style`, `model`, `ledger`, `walk`, `study`, `busy`,
+/// `interrupted`.
+fn kind(error: &Error) -> &'static str {
+    use wayword_navigation::WalkError;
+    use wayword_synthesis::observe::ObserveError;
+    match error {
+        Error::Platform(of) | Error::Observe(ObserveError::Platform(of)) | Error::Walk(WalkError::Platform(of)) => {
+            if matches!(of, PlatformError::Lost { .. }) { "lost" } else { "platform" }
+        }
+        Error::Format(_) => "format",
+        Error::Style(_) | Error::Prompt(_) => "style",
+        Error::Model(_)
+        | Error::Observe(ObserveError::Model(_))
+        | Error::Walk(WalkError::Model(_))
+        | Error::Service(_) => "model",
+        #[cfg(feature = "local")]
+        Error::Local(_) => "model",
+        Error::Ledger(_) => "ledger",
+        Error::Walk(_) => "walk",
+        #[cfg(feature = "study")]
+        Error::Study(_) => "study",
+        Error::House(_) | Error::Io { .. } => "file",
+        Error::Usage { .. } => "input",
+        Error::ChangedScene { .. } => "platform",
+        Error::Interrupted => "interrupted",
+        Error::Busy(_) | Error::BusyElsewhere { .. } => "busy",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_what_where_and_what_to_do() {
+        let usage = Explained::of(&Error::usage("there is no scene", "name one"));
+        assert_eq!((usage.kind, &*usage.what, usage.hint.as_deref()), ("input", "there is no scene", Some("name one")));
+        let missing = wayword_formats::read(Path::new("nowhere.json")).map_err(Error::from).unwrap_err();
+        let missing = Explained::of(&missing);
+        assert_eq!((missing.kind, missing.place.as_deref()), ("format", Some("nowhere.json")));
+        let file = tempfile::NamedTempFile::with_suffix(".json").unwrap();
+        std::fs::write(
+            file.path(),
+            r#"[{"path_id": 1, "scan": "s", "path": ["a"], "heading": "x", "instructions": ["Go."]}]"#,
+        )
+        .unwrap();
+        let item = Explained::of(&wayword_formats::read(file.path()).map_err(Error::from).unwrap_err());
+        let place = item.place.unwrap();
+        assert!(place.contains("item 0 (id 1): field \"heading\"") && item.hint.is_some(), "{place}: {}", item.what);
+    }
+}
