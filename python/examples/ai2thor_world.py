@@ -6,11 +6,11 @@ import os, re, sys  # noqa: E401
 import numpy as np
 import ai2thor.controller, ai2thor.platform  # noqa: E401
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import wayword_platform as kit  # noqa: E402
+import wayword.platform as kit  # noqa: E402
 GRID_M, WIDTH_PX, HEIGHT_PX, VERTICAL_DEG = 0.25, 640, 480, 73.74  # Unity's field of view is vertical: 90 degrees wide
 
 
-class Thor(kit.World):
+class Thor(kit.Platform):
     name, has_labels, scene = "AI2-THOR", True, None
 
     def __init__(self):

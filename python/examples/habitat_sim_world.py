@@ -7,12 +7,12 @@ import pathlib, sys  # noqa: E401
 import habitat_sim, numpy as np  # noqa: E401
 from habitat_sim.utils.common import quat_from_angle_axis
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-import wayword_platform as kit  # noqa: E402
+import wayword.platform as kit  # noqa: E402
 EYE_M, KINDS = 1.5, (habitat_sim.SensorType.COLOR, habitat_sim.SensorType.SEMANTIC)
 FILES = {pathlib.Path(name).stem: name for name in sys.argv[1:]}
 
 
-class Habitat(kit.World):
+class Habitat(kit.Platform):
     name, opened = "habitat-sim", (None, None)
 
     def __init__(self):  # without semantic files the objects are unknown; an empty list would say that there are none

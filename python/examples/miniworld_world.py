@@ -13,11 +13,11 @@ import pyglet
 pyglet.options["headless"] = "DISPLAY" not in os.environ  # before miniworld is imported
 from miniworld.objmesh import ObjMesh  # noqa: E402
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import wayword_platform as kit  # noqa: E402
+import wayword.platform as kit  # noqa: E402
 EYE_M, REACH_M = 1.5, 0.4  # the height of the eye, and the least distance to walls and objects
 
 
-class MiniWorld(kit.OpenWorld):
+class MiniWorld(kit.OpenPlatform):
     name, has_labels = "MiniWorld", True
 
     def scenes(self):

@@ -11,7 +11,7 @@ if "DISPLAY" not in os.environ:
 import mujoco  # noqa: E402
 import numpy as np  # noqa: E402
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-import wayword_platform as kit  # noqa: E402
+import wayword.platform as kit  # noqa: E402
 EYE_M, REACH_M = 1.5, 0.3  # the height of the eye, and the least distance to anything
 SHOWN = 0.0015  # what shows on a smaller share of a picture gets no label
 FILES = {name.stem: name for name in map(pathlib.Path, sys.argv[1:] or [pathlib.Path(__file__).with_name("flat.xml")])}
@@ -29,7 +29,7 @@ def room_at(scene, place, heading_rad):
     return None
 
 
-class MuJoCo(kit.OpenWorld):
+class MuJoCo(kit.OpenPlatform):
     name, has_labels, has_rooms = "MuJoCo", True, bool(ROOMS)
 
     def scenes(self):

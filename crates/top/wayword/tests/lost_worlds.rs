@@ -52,13 +52,13 @@ fn go_on(building: &Building, run: &str, command: &dyn Fn(&str) -> Ran) -> Vec<R
 const MORTAL: &str = r#"
 import os, pathlib, sys
 sys.path.insert(0, sys.argv[1])
-import wayword_platform as kit
+import wayword.platform as kit
 
 HERE = pathlib.Path(sys.argv[2])
 THINGS = [("lamp", (1, 1, 1)), ("sofa", (9, 1, 1)), ("piano", (1, 9, 1)), ("table", (9, 9, 1)), ("plant", (5, 9.5, 1))]
 
 
-class Room(kit.OpenWorld):
+class Room(kit.OpenPlatform):
     name, has_labels = "room", True
 
     def scenes(self):
@@ -124,10 +124,10 @@ fn a_child_that_dies_costs_nothing() {
 const POISONED: &str = r#"
 import os, sys
 sys.path.insert(0, sys.argv[1])
-import wayword_platform as kit
+import wayword.platform as kit
 
 
-class Rooms(kit.OpenWorld):
+class Rooms(kit.OpenPlatform):
     name, has_labels = "rooms", True
 
     def scenes(self):

@@ -3,12 +3,12 @@ import math
 import sys
 
 sys.path.insert(0, sys.argv[1])
-import wayword_platform as kit
+import wayword.platform as kit
 
 COLOURS = [(255, 0, 0), (0, 255, 0), (0, 0, 255), (255, 255, 255)]
 
 
-class Yard(kit.OpenWorld):
+class Yard(kit.OpenPlatform):
     name, has_labels = "yard", True
 
     def scenes(self):

@@ -1,4 +1,4 @@
-"""Tests of the kit: run `python3 -m unittest` in this folder, or cargo's test `process_python`."""
+"""Tests of the kit: run `python3 -m unittest tests/test_platform.py` in the folder `python`. They need nothing else."""
 
 import base64
 import contextlib
@@ -11,14 +11,16 @@ import sys
 import textwrap
 import unittest
 
-import wayword_platform as kit
+KIT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+sys.path.insert(0, KIT)
 
-HERE = os.path.dirname(os.path.abspath(__file__))
+import wayword.platform as kit  # noqa: E402
+
 LOOK = dict(scene="room", position=[1, 2, 1.5], heading_rad=0.5, horizontal_fov_rad=1.5, vertical_fov_rad=1.2,
             width_px=4, height_px=2, viewpoint=None, picture=True)
 
 
-class Room(kit.OpenWorld):
+class Room(kit.OpenPlatform):
     """A room of 4 x 4 m with a pillar in the middle."""
 
     name, has_labels = "room", True
@@ -121,8 +123,8 @@ class Frames(unittest.TestCase):
 class Serving(unittest.TestCase):
     def test_what_is_printed_does_not_reach_the_protocol(self):
         script = textwrap.dedent("""
-            import os, wayword_platform as kit
-            class Noisy(kit.World):
+            import os, wayword.platform as kit
+            class Noisy(kit.Platform):
                 def __init__(self):
                     print("loading"); os.write(1, b"from C\\n")
                 def scenes(self):
@@ -132,7 +134,7 @@ class Serving(unittest.TestCase):
             kit.serve(Noisy)
         """)
         requests = '{"id": 1, "method": "scenes", "params": {}}\n{"id": 2, "method": "scenes", "params": {}}\n'
-        done = subprocess.run([sys.executable, "-c", script], input=requests, capture_output=True, text=True, cwd=HERE)
+        done = subprocess.run([sys.executable, "-c", script], input=requests, capture_output=True, text=True, cwd=KIT)
         answers = [json.loads(line) for line in done.stdout.splitlines()]
         self.assertEqual(answers, [{"id": n, "result": {"scenes": ["a"]}} for n in (1, 2)])
         self.assertEqual(done.returncode, 0)

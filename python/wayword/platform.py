@@ -1,11 +1,9 @@
-"""Connects a simulator to Wayword: write a subclass of `World`, and `serve` it.
+"""A world for Wayword: write a subclass of `Platform`.
 
-One file, no dependencies, Python 3.9 or later. Copy it beside your own script. docs/PROCESS.md describes the protocol;
-examples are in python/examples/.
+    import wayword
+    from wayword.platform import Label, Platform, View
 
-    from wayword_platform import Label, Look, View, World, serve
-
-    class MyWorld(World):
+    class MyWorld(Platform):
         name = "my world"
         has_labels = True                                 # each View lists all visible objects
 
@@ -21,15 +19,25 @@ examples are in python/examples/.
         def observe(self, scene, look):
             return View(image=rgb_rows, labels=[Label("7", "lamp", position=(1, 2, 1))])
 
+    run = wayword.generate("runs/mine", platform=MyWorld(), paths=3)
+
+This file needs nothing but Python 3.9 or later. Where the package `wayword` cannot be installed, in the environment of
+a simulator say, copy the file beside your own script as `wayword_platform.py`, end the script with
+
     if __name__ == "__main__":
         serve(MyWorld)
 
-Leave out the methods that your world does not have: they are not offered. While the world is served, everything that it
-prints goes to standard error, even from libraries in C, because standard output carries the protocol.
+and give the script, or a world file that names it, to `wayword generate --platform process --data`. docs/PROCESS.md
+describes the protocol; examples are in python/examples/. While a world is served, everything that it prints goes to
+standard error, even from libraries in C, because standard output carries the protocol.
+
+Leave out the methods that your world does not have: they are not offered.
 
 Wayword's frame: right-handed, z up, metres; a heading is in radians, 0 along +y, clockwise seen from above. The
 functions `wayword_from_...` convert to this frame, and `..._from_wayword` from it.
 """
+
+from __future__ import annotations
 
 import base64
 import json
@@ -41,7 +49,9 @@ import sys
 import traceback
 import zlib
 from dataclasses import dataclass
-from typing import Any, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
+
+Place = Tuple[float, float, float]
 
 PROTOCOL = 1
 FRAME = "z-up, metres, radians clockwise from +y"
@@ -63,7 +73,7 @@ class UnknownScene(Refused):
 class Look:
     """The view to return: position, direction and field of view. The elevation is 0; pixels are square."""
 
-    position: tuple  # the eye, metres
+    position: Place  # the eye, metres
     heading_rad: float
     horizontal_fov_rad: float
     vertical_fov_rad: float
@@ -106,7 +116,7 @@ class Walk:
     target: Optional[str] = None  # the id of the object that the path leads to
 
 
-class World:
+class Platform:
     """A simulator. It needs `scenes` and `observe`, and `graph`, or `points` with `neighbours` or `walkable`.
 
     The methods besides `scenes` and `observe`, and what they return:
@@ -126,41 +136,49 @@ class World:
     has_rooms = False  # a View may name the room
     images: Optional[str] = None  # folder of the pictures that are sent as files
 
-    def scenes(self):
+    def scenes(self) -> Sequence[str]:
+        """The names of the scenes."""
         raise NotImplementedError
 
-    def observe(self, scene, look):
+    def observe(self, scene: str, look: Look) -> View:
+        """What is seen from a place."""
         raise NotImplementedError
 
 
-class OpenWorld(World):
+class OpenPlatform(Platform):
     """A world that knows whether a place is free. `points` and `walkable` are computed from that."""
 
-    def bounds(self, scene):
+    def bounds(self, scene: str) -> Tuple[Place, Place]:
         """The lowest and the highest (x, y, z) at which the eye may be."""
         raise NotImplementedError
 
-    def is_free(self, scene, place):
+    def is_free(self, scene: str, place: Place) -> bool:
         """Whether one can stand so that the eye is at this place."""
         raise NotImplementedError
 
-    def points(self, scene, count, seed):
+    def points(self, scene: str, count: int, seed: int) -> List[Place]:
+        """About `count` free places."""
         dice = random.Random(seed)
         least, most = self.bounds(scene)
-        places = (tuple(dice.uniform(a, b) for a, b in zip(least, most)) for _ in range(count))
+        (x0, y0, z0), (x1, y1, z1) = least, most
+        places = [(dice.uniform(x0, x1), dice.uniform(y0, y1), dice.uniform(z0, z1)) for _ in range(count)]
         return [place for place in places if self.is_free(scene, place)]
 
-    def walkable(self, scene, a, b):
+    def walkable(self, scene: str, a: Place, b: Place) -> bool:
+        """Whether all places between two are free, 10 cm apart."""
         steps = max(1, math.ceil(math.dist(a, b) / 0.1))
-        way = (tuple(p + (q - p) * n / steps for p, q in zip(a, b)) for n in range(steps + 1))
-        return all(self.is_free(scene, place) for place in way)
+        for n in range(steps + 1):
+            x, y, z = (p + (q - p) * n / steps for p, q in zip(a, b, strict=False))
+            if not self.is_free(scene, (x, y, z)):
+                return False
+        return True
 
 
 OPTIONAL = ("graph", "points", "neighbours", "walkable", "sample_path", "object_name", "visible_from")
 
 
-def serve(make_world):
-    """Makes the world (from a subclass of World, or a function that returns one) and answers requests until Wayword
+def serve(make_world: Callable[[], Platform]) -> None:
+    """Makes the world (from a subclass of Platform, or a function that returns one) and answers requests until Wayword
     closes the pipe."""
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     # From here on everything that is printed, even by C, goes to standard error, and no other code reads requests.
@@ -173,7 +191,7 @@ def serve(make_world):
         answers.flush()
 
 
-def answer(world, request):
+def answer(world: Platform, request: Mapping[str, Any]) -> str:
     """The answer to one request, as a line of JSON."""
     try:
         method = METHODS.get(request["method"])
@@ -189,7 +207,7 @@ def answer(world, request):
         return json.dumps({"id": request["id"], "error": {"code": code, "message": message}})
 
 
-def _hello(world, params):
+def _hello(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     if params["protocol"] != PROTOCOL:
         raise Refused(f"Wayword speaks version {params['protocol']}, but this kit speaks version {PROTOCOL}")
     offers = [name for name in OPTIONAL if hasattr(world, name)]
@@ -200,30 +218,30 @@ def _hello(world, params):
     return greeting
 
 
-def _graph(world, params):
+def _graph(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     places, edges = world.graph(params["scene"])
     return {"viewpoints": _places(places), "edges": [[str(a), str(b)] for a, b in edges]}
 
 
-def _points(world, params):
+def _points(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     return {"points": _places(world.points(params["scene"], params["count"], params["seed"]))}
 
 
-def _places(places):
+def _places(places: Any) -> List[Dict[str, Any]]:
     if isinstance(places, dict):
         return [{"id": str(name), "position": _numbers(place)} for name, place in places.items()]
     return [{"position": _numbers(place)} for place in places]
 
 
-def _neighbours(world, params):
+def _neighbours(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     return {"viewpoints": [str(name) for name in world.neighbours(params["scene"], params["viewpoint"])]}
 
 
-def _walkable(world, params):
+def _walkable(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     return {"walkable": [bool(world.walkable(params["scene"], tuple(a), tuple(b))) for a, b in params["pairs"]]}
 
 
-def _sample_path(world, params):
+def _sample_path(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     hops, length_m = tuple(params["hops"]), tuple(params["length_m"])
     walk = world.sample_path(params["scene"], hops, length_m, params["seed"])
     if walk is None:
@@ -233,7 +251,7 @@ def _sample_path(world, params):
     return {"path": {"stops": stops, "heading_rad": heading, "target": walk.target}}
 
 
-def _observe(world, params):
+def _observe(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     params = dict(params)
     scene = params.pop("scene")
     known = {name: params[name] for name in Look.__dataclass_fields__ if name in params}
@@ -247,8 +265,8 @@ def _observe(world, params):
     return result
 
 
-def _label(label):
-    sent = {"object": str(label.object), "name": label.name, "colour": label.colour}
+def _label(label: Label) -> Dict[str, Any]:
+    sent: Dict[str, Any] = {"object": str(label.object), "name": label.name, "colour": label.colour}
     for name in ("position", "box_px"):
         value = getattr(label, name)
         sent[name] = None if value is None else _numbers(value)
@@ -258,7 +276,7 @@ def _label(label):
     return sent
 
 
-def _image(image, width_px, height_px):
+def _image(image: Any, width_px: int, height_px: int) -> Dict[str, str]:
     if isinstance(image, (str, os.PathLike)):
         return {"file": os.fspath(image)}
     shape = getattr(image, "shape", None)
@@ -273,16 +291,16 @@ def _image(image, width_px, height_px):
     return {"base64": base64.b64encode(image).decode()}
 
 
-def _object_name(world, params):
+def _object_name(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     return {"name": world.object_name(params["scene"], params["object"])}
 
 
-def _visible_from(world, params):
+def _visible_from(world: Any, params: Mapping[str, Any]) -> Dict[str, Any]:
     found = world.visible_from(params["scene"], params["object"])
     return {"viewpoints": None if found is None else [str(name) for name in found]}
 
 
-METHODS = {
+METHODS: Dict[str, Callable[[Any, Mapping[str, Any]], Dict[str, Any]]] = {
     "hello": _hello,
     "scenes": lambda world, _: {"scenes": [str(name) for name in world.scenes()]},
     "graph": _graph,
@@ -296,18 +314,18 @@ METHODS = {
 }
 
 
-def _numbers(values):
+def _numbers(values: Any) -> List[float]:
     return [float(value) for value in values]
 
 
-def png(rgb, width_px, height_px):
+def png(rgb: bytes, width_px: int, height_px: int) -> bytes:
     """A PNG file made from pixels: rows from the top, RGB."""
     stride = width_px * 3
     if len(rgb) != stride * height_px:
         raise ValueError(f"{width_px} x {height_px} pixels need {stride * height_px} bytes, not {len(rgb)}")
     rows = b"".join(b"\0" + rgb[start : start + stride] for start in range(0, len(rgb), stride))
 
-    def chunk(kind, body):
+    def chunk(kind: bytes, body: bytes) -> bytes:
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
 
     header = struct.pack(">IIBBBBB", width_px, height_px, 8, 2, 0, 0, 0)
@@ -318,12 +336,12 @@ def png(rgb, width_px, height_px):
 # Right-handed with y up and -z ahead: OpenGL, Habitat, MiniWorld, glTF.
 
 
-def wayword_from_y_up(position):
+def wayword_from_y_up(position: Sequence[float]) -> Place:
     x, y, z = position
     return (x, -z, y)
 
 
-def y_up_from_wayword(position):
+def y_up_from_wayword(position: Sequence[float]) -> Place:
     x, y, z = position
     return (x, z, -y)
 
@@ -331,32 +349,32 @@ def y_up_from_wayword(position):
 # Left-handed with y up and z ahead: Unity, AI2-THOR, ThreeDWorld. Yaw is in degrees, clockwise from +z.
 
 
-def wayword_from_unity(position):
+def wayword_from_unity(position: Sequence[float]) -> Place:
     x, y, z = position
     return (x, z, y)
 
 
-def unity_from_wayword(position):
+def unity_from_wayword(position: Sequence[float]) -> Place:
     return wayword_from_unity(position)
 
 
-def wayword_from_unity_yaw(yaw_deg):
+def wayword_from_unity_yaw(yaw_deg: float) -> float:
     return math.radians(yaw_deg) % math.tau
 
 
-def unity_yaw_from_wayword(heading_rad):
+def unity_yaw_from_wayword(heading_rad: float) -> float:
     return math.degrees(heading_rad) % 360
 
 
 # Left-handed with z up, x ahead, y right, centimetres: Unreal; CARLA in metres. Yaw is in degrees, clockwise from +x.
 
 
-def wayword_from_unreal(position, metres_per_unit=0.01):
+def wayword_from_unreal(position: Sequence[float], metres_per_unit: float = 0.01) -> Place:
     x, y, z = position
     return (y * metres_per_unit, x * metres_per_unit, z * metres_per_unit)
 
 
-def unreal_from_wayword(position, metres_per_unit=0.01):
+def unreal_from_wayword(position: Sequence[float], metres_per_unit: float = 0.01) -> Place:
     x, y, z = position
     return (y / metres_per_unit, x / metres_per_unit, z / metres_per_unit)
 
@@ -369,17 +387,17 @@ unreal_yaw_from_wayword = unity_yaw_from_wayword
 # Counter-clockwise angles: from +x (mathematics, MuJoCo, ROS, MiniWorld), and from -z (Habitat: yaw about y, up).
 
 
-def wayword_from_angle(angle_rad):
+def wayword_from_angle(angle_rad: float) -> float:
     return (math.pi / 2 - angle_rad) % math.tau
 
 
-def angle_from_wayword(heading_rad):
+def angle_from_wayword(heading_rad: float) -> float:
     return (math.pi / 2 - heading_rad) % math.tau
 
 
-def wayword_from_yaw(yaw_rad):
+def wayword_from_yaw(yaw_rad: float) -> float:
     return -yaw_rad % math.tau
 
 
-def yaw_from_wayword(heading_rad):
+def yaw_from_wayword(heading_rad: float) -> float:
     return -heading_rad % math.tau
