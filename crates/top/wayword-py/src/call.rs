@@ -1,0 +1,164 @@
+//! Commands, run as a program or inside a call.
+
+use crate::raise::{raised, raised_of};
+use clap::Parser;
+use pyo3::prelude::*;
+use std::{
+    any::Any,
+    ffi::OsString,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        mpsc::{RecvTimeoutError, channel},
+    },
+    thread,
+    time::Duration,
+};
+use wayword::{
+    cli::Cli,
+    commands,
+    error::Error,
+    interrupt,
+    output::{Listener, Output, ProgressBar},
+};
+use wayword_platforms::process;
+
+/// How often a call looks for Ctrl-C and tells how far it is.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
+const STACK: usize = 8 << 20;
+
+/// Commands run one at a time, because an interrupt means the one that runs.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// Runs the program with its name and arguments. Returns the exit code.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
+pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>, guardian: (OsString, Vec<OsString>)) -> u8 {
+    say_how_to_start(guardian);
+    py.detach(|| wayword::main(arguments))
+}
+
+/// Runs a command inside the interpreter. `arguments` begin with the name of the command. `hears` has the methods `say(text)`
+/// and `progress(done, total, text)`. Returns the exit code and the result as JSON.
+#[pyfunction]
+#[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
+pub(crate) fn call(
+    py: Python<'_>,
+    arguments: Vec<OsString>,
+    guardian: (OsString, Vec<OsString>),
+    hears: Py<PyAny>,
+) -> PyResult<(u8, String)> {
+    say_how_to_start(guardian);
+    let typed = std::iter::once(OsString::from("wayword")).chain(arguments);
+    let cli = Cli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&told.to_string())))?;
+    let heard = Arc::new(Heard::default());
+    let output = Output::heard_by(Arc::clone(&heard) as Arc<dyn Listener>);
+    let exit =
+        waited(py, &heard, &hears, || commands::run(cli.command, &output))?.map_err(|error| raised(py, error))?;
+    Ok((exit as u8, lock(&heard.data).take().unwrap_or_default()))
+}
+
+/// What the parser of the command line says: the error without its usage, and no place.
+fn in_parts(told: &str) -> (String, Option<String>, Option<String>) {
+    let told = told.trim_start_matches("error: ");
+    let what = ["\n\nUsage:", "\n\nFor more"].iter().fold(told, |told, end| told.split(end).next().unwrap_or(told));
+    (what.trim().to_owned(), None, Some("the flags are those of the command: see `wayword COMMAND --help`".to_owned()))
+}
+
+/// Children of this process are guarded by the interpreter, which this program is a module of.
+fn say_how_to_start((program, arguments): (OsString, Vec<OsString>)) {
+    process::this_program_is(process::Guardian { program: program.into(), arguments });
+}
+
+/// What a command said so far.
+#[derive(Default)]
+struct Heard {
+    data: Mutex<Option<String>>,
+    said: Mutex<Vec<String>>,
+    bar: Mutex<Option<ProgressBar>>,
+}
+
+impl Listener for Heard {
+    fn data(&self, json: String) {
+        *lock(&self.data) = Some(json);
+    }
+
+    fn say(&self, text: String) {
+        lock(&self.said).push(text);
+    }
+
+    fn bar(&self, bar: &ProgressBar) {
+        *lock(&self.bar) = Some(bar.clone());
+    }
+}
+
+impl Heard {
+    /// Tells Python what was said since the last time, and how far the work is. A signal that Python received is raised here.
+    fn tell(&self, hears: &Py<PyAny>) -> PyResult<()> {
+        let said = std::mem::take(&mut *lock(&self.said));
+        let bar = lock(&self.bar).clone();
+        Python::attach(|py| {
+            py.check_signals()?;
+            for text in said {
+                hears.call_method1(py, "say", (text,))?;
+            }
+            if let Some(bar) = bar {
+                let text = [bar.prefix(), bar.message()].join(" ").trim().to_owned();
+                hears.call_method1(py, "progress", (bar.position(), bar.length().unwrap_or_default(), text))?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Does work in a thread, with the interpreter released. Ctrl-C interrupts the work, which comes to its end; then the exception
+/// is raised. A second one ends the children that the work waits for.
+fn waited<T: Send>(
+    py: Python<'_>,
+    heard: &Heard,
+    hears: &Py<PyAny>,
+    work: impl FnOnce() -> Result<T, Error> + Send,
+) -> PyResult<Result<T, Error>> {
+    let (done, raised) = py.detach(|| {
+        let _alone = lock(&ONE_AT_A_TIME);
+        interrupt::forget();
+        thread::scope(|scope| {
+            let (ends, ended) = channel::<()>();
+            let worker = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, move || {
+                let result = work();
+                drop(ends);
+                result
+            });
+            let Ok(worker) = worker else { return (None, None) };
+            let mut raised = None;
+            while ended.recv_timeout(LOOK_EVERY) == Err(RecvTimeoutError::Timeout) {
+                if let Err(error) = heard.tell(hears) {
+                    if raised.is_some() {
+                        process::end_all();
+                    }
+                    raised.get_or_insert(error);
+                    interrupt::ask();
+                }
+            }
+            let done = worker.join();
+            let told = heard.tell(hears);
+            (Some(done), raised.or(told.err()))
+        })
+    });
+    match (done, raised) {
+        (_, Some(error)) => Err(error),
+        (Some(Ok(result)), None) => Ok(result),
+        (Some(Err(panic)), None) => Err(raised_of(py, "internal", (words(&*panic), None, None))),
+        (None, None) => Err(raised_of(py, "internal", ("no thread can be started".to_owned(), None, None))),
+    }
+}
+
+/// What a panic said.
+fn words(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().cloned();
+    text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_default()
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

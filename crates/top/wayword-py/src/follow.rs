@@ -1,0 +1,66 @@
+//! Which walks a text may mean.
+
+use crate::raise::{raised, raised_of};
+use pyo3::prelude::*;
+use std::{collections::BTreeMap, path::PathBuf};
+use wayword::{error::Error, follow::KnownScenes, meant::MeantWalk, platforms};
+use wayword_core::{Heading, Platform, SceneId, ViewpointId};
+
+/// The scenes of a platform, each surveyed when it is first asked for.
+#[pyclass(frozen, module = "wayword._wayword")]
+pub(crate) struct Map {
+    platform: Box<dyn Platform>,
+    scenes: KnownScenes,
+}
+
+#[pymethods]
+impl Map {
+    #[new]
+    #[pyo3(signature = (platform, data=None, at=None, island=None))]
+    fn new(
+        py: Python<'_>,
+        platform: &str,
+        data: Option<PathBuf>,
+        at: Option<&str>,
+        island: Option<usize>,
+    ) -> PyResult<Self> {
+        let opened = py.detach(|| platforms::open_named(platform, data.as_deref(), at, island));
+        Ok(Self { platform: opened.map_err(|error| raised(py, error))?, scenes: KnownScenes::new() })
+    }
+
+    /// The names of the scenes.
+    fn scenes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let scenes = py.detach(|| self.platform.scenes()).map_err(|error| raised(py, error.into()))?;
+        Ok(scenes.into_iter().map(|scene| scene.to_string()).collect())
+    }
+
+    /// The viewpoints of a scene: positions of the eye, metres.
+    fn viewpoints(&self, py: Python<'_>, scene: &str) -> PyResult<BTreeMap<String, [f64; 3]>> {
+        let scene = id(py, SceneId::new(scene))?;
+        let graph = py.detach(|| self.platform.graph(&scene)).map_err(|error| raised(py, error.into()))?;
+        let place = |id: &ViewpointId| Some((id.to_string(), graph.position(id)?.to_array()));
+        Ok(graph.viewpoints().filter_map(place).collect())
+    }
+
+    /// The walks that a text may mean, the likeliest first: their viewpoints and how likely each is.
+    fn follow(
+        &self,
+        py: Python<'_>,
+        text: &str,
+        from: (&str, &str, f64),
+        most: usize,
+    ) -> PyResult<Vec<(Vec<String>, f64)>> {
+        let (scene, start, heading) = from;
+        let (scene, start) = (id(py, SceneId::new(scene))?, id(py, ViewpointId::new(start))?);
+        let heading = id(py, Heading::new(heading))?;
+        let found: Result<Vec<MeantWalk>, Error> =
+            py.detach(|| self.scenes.meant(&*self.platform, (&scene, &start, heading), text, most));
+        let walk = |walk: MeantWalk| (walk.viewpoints.iter().map(ToString::to_string).collect(), walk.share);
+        Ok(found.map_err(|error| raised(py, error))?.into_iter().map(walk).collect())
+    }
+}
+
+/// A value that Python gave, or why it cannot be one.
+fn id<T, E: ToString>(py: Python<'_>, made: Result<T, E>) -> PyResult<T> {
+    made.map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
+}

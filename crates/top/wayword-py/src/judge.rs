@@ -1,0 +1,245 @@
+//! Trajectories and their figures.
+
+use crate::raise::{raised, raised_of};
+use pyo3::{
+    intern,
+    prelude::*,
+    types::{PyBytes, PyDict, PyList, PySequence, PyString, PyTuple},
+};
+use std::{ops::Range, path::PathBuf};
+use wayword::{
+    episodes,
+    error::Error,
+    judge::{Judge as Episodes, Problems, Scores as Figures},
+    platforms,
+};
+use wayword_metrics::{Metric, Rule};
+
+/// The episodes that trajectories are scored by.
+#[pyclass(frozen, module = "wayword._wayword")]
+pub(crate) struct Judge(Episodes);
+
+#[pymethods]
+impl Judge {
+    #[new]
+    #[pyo3(signature = (episodes, platform, data=None, at=None, island=None))]
+    #[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
+    fn new(
+        py: Python<'_>,
+        episodes: PathBuf,
+        platform: &str,
+        data: Option<PathBuf>,
+        at: Option<&str>,
+        island: Option<usize>,
+    ) -> PyResult<Self> {
+        let judge = py.detach(|| -> Result<Episodes, Error> {
+            let platform = platforms::open_named(platform, data.as_deref(), at, island)?;
+            Episodes::new(&episodes::read(&episodes, platform.as_ref())?, platform.as_ref())
+        });
+        judge.map(Self).map_err(|error| raised(py, error))
+    }
+
+    /// How many instructions there are.
+    fn __len__(&self) -> usize {
+        self.0.instructions()
+    }
+
+    /// The figures of trajectories: a list of `{"instr_id", "trajectory", "predObjId"}`, or a mapping from instructions to
+    /// trajectories.
+    fn score(&self, py: Python<'_>, submission: &Bound<'_, PyAny>, partial: bool) -> PyResult<Scores> {
+        let submission = Submission::read(submission)?;
+        let scored = py.detach(|| {
+            let mut scoring = self.0.begin();
+            for one in &submission.trajectories {
+                let names = submission.steps[one.steps.clone()].iter().map(|step| submission.text(step));
+                scoring.take(
+                    submission.text(&one.name),
+                    names,
+                    one.object.as_ref().map(|object| submission.text(object)),
+                );
+            }
+            scoring.end(Problems::default(), partial)
+        });
+        scored.map(Scores).map_err(|problems| refused(py, &problems))
+    }
+}
+
+/// The exception for a submission that is not scored.
+fn refused(py: Python<'_>, problems: &Problems) -> PyErr {
+    let told: Vec<(Option<&str>, &str)> =
+        problems.told().iter().map(|problem| (problem.instr_id.as_deref(), &*problem.problem)).collect();
+    let made = py
+        .import("wayword.errors")
+        .and_then(|errors| errors.getattr("SubmissionError"))
+        .and_then(|class| class.call1((told, problems.count(), problems.missing())));
+    made.map_or_else(|error| error, PyErr::from_value)
+}
+
+/// What Python handed in, copied, so that the interpreter can be released while it is scored.
+#[derive(Default)]
+struct Submission {
+    /// All names, one after the other.
+    names: String,
+    /// The viewpoints of all trajectories.
+    steps: Vec<Range<usize>>,
+    trajectories: Vec<Handed>,
+}
+
+/// One trajectory.
+struct Handed {
+    name: Range<usize>,
+    steps: Range<usize>,
+    object: Option<Range<usize>>,
+}
+
+impl Submission {
+    fn read(given: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let mut read = Self::default();
+        let py = given.py();
+        if let Ok(mapping) = given.cast::<PyDict>() {
+            for (name, trajectory) in mapping.iter() {
+                read.take(&name, &trajectory, None)?;
+            }
+            return Ok(read);
+        }
+        for (at, entry) in given.try_iter()?.enumerate() {
+            let entry = entry?;
+            let field = |field| -> PyResult<Option<Bound<'_, PyAny>>> { entry.cast::<PyDict>()?.get_item(field) };
+            let lacks = |what: &str| {
+                let hint =
+                    "give {\"instr_id\": ..., \"trajectory\": [...]}, and \"predObjId\" where an object is named";
+                let what = format!("it has no {what}");
+                raised_of(py, "submission", (what, Some(format!("trajectory {at}")), Some(hint.to_owned())))
+            };
+            let name = field(intern!(py, "instr_id"))?.ok_or_else(|| lacks("instr_id"))?;
+            let trajectory = field(intern!(py, "trajectory"))?.ok_or_else(|| lacks("trajectory"))?;
+            let object = field(intern!(py, "predObjId"))?.filter(|object| !object.is_none());
+            read.take(&name, &trajectory, object.as_ref())?;
+        }
+        Ok(read)
+    }
+
+    fn take(
+        &mut self,
+        name: &Bound<'_, PyAny>,
+        trajectory: &Bound<'_, PyAny>,
+        object: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let name = self.keep(name)?;
+        let first = self.steps.len();
+        if let Ok(list) = trajectory.cast::<PyList>() {
+            for step in list.iter() {
+                self.step(&step)?;
+            }
+        } else {
+            for step in trajectory.try_iter()? {
+                self.step(&step?)?;
+            }
+        }
+        // An object's id may be a number, as in the dataset.
+        let object = object.map(|object| object.str().and_then(|object| self.keep(object.as_any()))).transpose()?;
+        self.trajectories.push(Handed { name, steps: first..self.steps.len(), object });
+        Ok(())
+    }
+
+    /// Takes a viewpoint, a viewpoint with angles, or several viewpoints, as VLN-DUET gives them.
+    fn step(&mut self, step: &Bound<'_, PyAny>) -> PyResult<()> {
+        if step.is_instance_of::<PyString>() {
+            return self.viewpoint(step);
+        }
+        let (first, second) = if let Ok(pose) = step.cast::<PyTuple>() {
+            (pose.get_item(0)?, pose.get_item(1).ok())
+        } else if let Ok(pose) = step.cast::<PyList>() {
+            (pose.get_item(0)?, pose.get_item(1).ok())
+        } else {
+            let pose = step.cast::<PySequence>()?;
+            (pose.get_item(0)?, pose.get_item(1).ok())
+        };
+        self.viewpoint(&first)?;
+        if second.is_some_and(|second| second.is_instance_of::<PyString>()) {
+            for further in step.try_iter()?.skip(1) {
+                self.viewpoint(&further?)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn viewpoint(&mut self, name: &Bound<'_, PyAny>) -> PyResult<()> {
+        let name = self.keep(name)?;
+        self.steps.push(name);
+        Ok(())
+    }
+
+    /// Keeps a text of Python's.
+    fn keep(&mut self, text: &Bound<'_, PyAny>) -> PyResult<Range<usize>> {
+        let first = self.names.len();
+        self.names.push_str(text.cast::<PyString>()?.to_str()?);
+        Ok(first..self.names.len())
+    }
+
+    fn text(&self, at: &Range<usize>) -> &str {
+        self.names.get(at.clone()).unwrap_or_default()
+    }
+}
+
+/// The figures of trajectories, in the order of the episodes.
+#[pyclass(frozen, module = "wayword._wayword")]
+pub(crate) struct Scores(Figures);
+
+#[pymethods]
+impl Scores {
+    /// How many trajectories there are.
+    fn __len__(&self) -> usize {
+        self.0.rows().len()
+    }
+
+    /// The instructions.
+    fn names(&self) -> Vec<&str> {
+        self.0.names().collect()
+    }
+
+    /// Scene and path of each: figures of one path are not independent.
+    fn paths(&self) -> Vec<&str> {
+        self.0.paths().collect()
+    }
+
+    /// Whether a rule of success can be applied.
+    fn has_rule(&self, py: Python<'_>, rule: &str) -> PyResult<bool> {
+        Ok(self.0.has(named(py, rule)?))
+    }
+
+    /// A figure of each trajectory, as 64-bit numbers in the machine's order; NaN where there is none.
+    fn values<'py>(&self, py: Python<'py>, metric: &str, rule: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let (metric, rule) = (named(py, metric)?, named(py, rule)?);
+        let values = py.detach(|| {
+            let value = |value: Option<f64>| value.unwrap_or(f64::NAN).to_ne_bytes();
+            self.0.values(metric, rule).flat_map(value).collect::<Vec<u8>>()
+        });
+        Ok(PyBytes::new(py, &values))
+    }
+
+    /// The mean of a figure; `None` where no trajectory has it.
+    fn mean(&self, py: Python<'_>, metric: &str, rule: &str) -> PyResult<Option<f64>> {
+        let (metric, rule): (Metric, Rule) = (named(py, metric)?, named(py, rule)?);
+        Ok(py.detach(|| self.0.mean(metric, rule)))
+    }
+
+    /// The mean with its 95 % interval: mean, low, high, trajectories, paths.
+    fn estimate(
+        &self,
+        py: Python<'_>,
+        metric: &str,
+        rule: &str,
+        resamples: usize,
+        seed: u64,
+    ) -> PyResult<Option<(f64, f64, f64, usize, usize)>> {
+        let (metric, rule): (Metric, Rule) = (named(py, metric)?, named(py, rule)?);
+        let estimate = py.detach(|| self.0.estimate(metric, rule, resamples, seed));
+        Ok(estimate.map(|found| (found.mean, found.low, found.high, found.values, found.clusters)))
+    }
+}
+
+/// A figure or a rule by its name in files.
+fn named<T: serde::de::DeserializeOwned>(py: Python<'_>, name: &str) -> PyResult<T> {
+    serde_json::from_value(name.into()).map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
+}

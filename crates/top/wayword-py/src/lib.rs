@@ -1,0 +1,31 @@
+//! The extension module of the Python package: it hands calls to Wayword, and what comes back to Python.
+//!
+//! Architecture invariant: there is no logic here. What a call means is in the crate `wayword`, and how Python shows it in
+//! `python/wayword/`.
+
+mod call;
+mod follow;
+mod judge;
+mod raise;
+mod world;
+
+use pyo3::prelude::*;
+
+/// The extension module.
+#[pymodule]
+mod _wayword {
+    #[pymodule_export]
+    use crate::{
+        call::{call, main},
+        follow::Map,
+        judge::{Judge, Scores},
+        world::{forget_world, put_world},
+    };
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        wayword::leave_contained_panics_to_errors();
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

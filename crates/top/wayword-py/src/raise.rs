@@ -1,0 +1,22 @@
+//! Errors as Python exceptions, whose classes are in `wayword/errors.py`.
+
+use pyo3::prelude::*;
+use wayword::{error::Error, explained::Explained};
+
+/// The exception of an error.
+// A closure's argument cannot be a reference where `map_err` gives the value away.
+#[allow(clippy::needless_pass_by_value)]
+pub(crate) fn raised(py: Python<'_>, error: Error) -> PyErr {
+    let Explained { kind, what, place, hint } = Explained::of(&error);
+    raised_of(py, kind, (what, place, hint))
+}
+
+/// The exception of a kind, with what is wrong, where, and what to do.
+pub(crate) fn raised_of(py: Python<'_>, kind: &str, parts: (String, Option<String>, Option<String>)) -> PyErr {
+    let (what, place, hint) = parts;
+    let made = py
+        .import("wayword.errors")
+        .and_then(|errors| errors.getattr("of_kind"))
+        .and_then(|of_kind| of_kind.call1((kind, what, place, hint)));
+    made.map_or_else(|error| error, PyErr::from_value)
+}

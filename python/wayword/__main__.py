@@ -1,0 +1,17 @@
+"""The program `wayword`, as `python -m wayword` and as the script of that name."""
+
+import signal
+import sys
+
+
+def main() -> int:
+    """Runs the program with the arguments of this process. Returns its exit code."""
+    from wayword import _wayword
+
+    # Wayword handles Ctrl-C itself. Python's own handler would raise KeyboardInterrupt after the end.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _wayword.main(["wayword", *sys.argv[1:]], (sys.executable, ["-m", "wayword"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

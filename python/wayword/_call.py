@@ -1,0 +1,110 @@
+"""Calls of the program's commands inside this process."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import os
+import sys
+from collections.abc import Callable, Iterator
+from typing import Any, Union
+
+from . import errors
+from .platform import Platform, answer
+
+Progress = bool | None | Callable[[int, int, str], None]
+"""How far a call is: a function of (done, total, text); `True` or `None` for a bar in a notebook or terminal; `False`
+for none."""
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+_log = logging.getLogger("wayword")
+GUARDIAN: tuple[str, list[str]] = (sys.executable or "python3", ["-m", "wayword"])
+
+# The program's exit codes: docs/CLI.md lists them.
+_WITH_LOSS, _ENDS = 3, {1: errors.InputError, 5: errors.StoppedError, 7: errors.LostError}
+
+
+class _Hears:
+    """Hears what a command says: messages go to the logger `wayword`, and how far it is to a function."""
+
+    def __init__(self, show: Callable[[int, int, str], None]) -> None:
+        self.show = show
+        self.last: tuple[int, int, str] | None = None
+
+    def progress(self, done: int, total: int, text: str) -> None:
+        if (done, total, text) != self.last:
+            self.last = (done, total, text)
+            self.show(done, total, text)
+
+    def say(self, text: str) -> None:
+        _log.log(logging.WARNING if text.startswith("warning") else logging.INFO, "%s", text)
+
+
+def command(*arguments: object, progress: Progress = None) -> Any:
+    """Runs any command of `wayword` in this process, and returns its result, as `--json` prints it.
+
+    `wayword.command("ledger", "show")`, for commands that have no function of their own. Texts that fail a check are no
+    error: the result says so. Ctrl-C lets the command come to its end.
+
+    Raises:
+        WaywordError: one of its kinds, see `wayword.errors`.
+    """
+    from . import _wayword
+    from .notebook import shown
+
+    with shown(progress) as show:
+        typed = [os.fspath(one) if isinstance(one, os.PathLike) else str(one) for one in arguments]
+        code, told = _wayword.call(typed, GUARDIAN, _Hears(show))
+    result = json.loads(told) if told else None
+    if code in _ENDS:
+        reason = (result or {}).get("stopped") or (result or {}).get("reason") or "the command stopped before its end"
+        what, _, hint = str(reason).partition("\nhint: ")
+        raise _ENDS[code](what, hint=hint or "give the same call again to go on")
+    return result
+
+
+def flags(**values: object) -> list[str]:
+    """Keyword arguments as flags: `per_path=2` is `--per-path 2`, a list is repeated, `True` is the flag alone."""
+    given: list[str] = []
+    for name, value in values.items():
+        flag = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            given.append(flag)
+        elif isinstance(value, tuple) and len(value) == 2:
+            given += [flag, f"{value[0]}..{value[1]}"]
+        else:
+            each: list[object] = list(value) if isinstance(value, (list, set, tuple)) else [value]
+            for one in each:
+                given += [flag, os.fspath(one) if isinstance(one, os.PathLike) else str(one)]
+    return given
+
+
+def opened(
+    platform: str | Platform, data: PathLike | None, at: str | None, island: int | None
+) -> contextlib.AbstractContextManager[dict[str, Any]]:
+    """The flags that name a platform. A world of this process is known while the context lasts."""
+    if isinstance(platform, str):
+        named = {"platform": platform, "data": None if data is None else os.fspath(data), "at": at, "island": island}
+        return contextlib.nullcontext(named)
+    if data is not None or at is not None or island is not None:
+        raise errors.InputError("a world of this process takes no data, at or island", hint="leave them out")
+    return _inside(platform)
+
+
+@contextlib.contextmanager
+def _inside(world: Platform) -> Iterator[dict[str, Any]]:
+    from . import _wayword
+
+    if not isinstance(world, Platform):
+        hint = "give a name from `wayword platforms`, or an object of a subclass of wayword.Platform"
+        raise errors.InputError(f"platform {world!r} is no world", hint=hint)
+    name = type(world).__name__
+    data = _wayword.put_world(name, lambda line: answer(world, json.loads(line)).encode())
+    try:
+        yield {"platform": "process", "data": os.fspath(data), "at": None, "island": None}
+    finally:
+        _wayword.forget_world(data)

@@ -1,0 +1,385 @@
+"""Runs as Python objects: `load_run`."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import errors, notebook
+from ._extras import extra
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from ._call import PathLike
+
+FORMAT = "wayword/1"
+"""The format of a run's instructions that this version reads."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A place on a path, and which way the walker looks there.
+
+    Wayword's frame of reference: right-handed, z up, metres; headings in radians, 0 along +y, clockwise seen from
+    above.
+    """
+
+    position: tuple[float, float, float]
+    """The eye: x, y, z in metres."""
+    heading_rad: float
+    elevation_rad: float
+    """0 is level, up is positive."""
+    viewpoint: str | None = None
+    """The node of the viewpoint graph, if the frame is at one."""
+    level: int | None = None
+    """The storey; the lowest is 1."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """A path through a scene: frames from its start to its goal."""
+
+    id: str
+    scene: str
+    frames: tuple[Frame, ...]
+    target: str | None = None
+    """The object at its end, in words."""
+    target_object: str | None = None
+    """The id of that object."""
+    has_poses: bool = True
+    """Whether it is known where the frames are. A recording without poses has frames in order, and no more."""
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        """The eye at each frame: metres, shape (frames, 3)."""
+        return np.array([frame.position for frame in self.frames], dtype=np.float64).reshape(-1, 3)
+
+    @property
+    def headings_rad(self) -> npt.NDArray[np.float64]:
+        """Which way the walker looks at each frame: radians, shape (frames,)."""
+        return np.array([frame.heading_rad for frame in self.frames], dtype=np.float64)
+
+    @property
+    def viewpoints(self) -> list[str]:
+        """The nodes of the viewpoint graph, from start to goal; empty if a frame lies at none."""
+        names = [frame.viewpoint for frame in self.frames if frame.viewpoint is not None]
+        return names if len(names) == len(self.frames) else []
+
+    @property
+    def length_m(self) -> float | None:
+        """Length over the frames, metres; `None` without poses."""
+        if not self.has_poses:
+            return None
+        return float(np.linalg.norm(np.diff(self.positions, axis=0), axis=1).sum())
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a check found in a text."""
+
+    check: str
+    """form, landmarks, order, turns, floors, route, coverage, leak."""
+    verdict: str
+    """pass, unverified or fail."""
+    reason: str = ""
+    span: tuple[int, int] | None = None
+    """The words that it is about: a range of bytes of the text in UTF-8."""
+
+
+@dataclass(frozen=True)
+class Mention:
+    """Words of a text that name something on the path."""
+
+    span: tuple[int, int]
+    """A range of bytes of the text in UTF-8."""
+    kind: str
+    """landmark, room, turn, floor or target."""
+    frame: int
+    """Where on the path it is, from 0."""
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """A text for a path, with what was found in it and who made it. In a notebook it is shown as a card."""
+
+    text: str
+    style: str
+    verdict: str
+    """pass: every check passed. unverified: something could not be checked. fail: a check failed."""
+    platform: str
+    path: Path
+    findings: tuple[Finding, ...] = ()
+    mentions: tuple[Mention, ...] = ()
+    ambiguity: Mapping[str, Any] | None = None
+    """What the text may mean beside its path: `ends`, `objects`, `told_apart_by`."""
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    """Who asked, answered, summarised and wrote. `labels` is ground truth, `rules` is a program without a model."""
+    split: str | None = None
+    captions: tuple[str, ...] = field(default=(), repr=False)
+    """What was seen at each frame, in words."""
+    folder: pathlib.Path | None = field(default=None, repr=False)
+    """The run folder, which may have pictures of the frames."""
+
+    def picture(self, frame: int) -> bytes | None:
+        """The picture of a frame (from 0), as the bytes of a JPEG file; `None` where the run has none."""
+        return notebook.picture_of(self.folder, self.path.id, frame)
+
+    def _repr_html_(self) -> str:
+        return notebook.card(self)
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A text that failed its checks, and so is not among a run's instructions."""
+
+    path_id: str
+    style: str
+    reason: str
+    last: Instruction | None = None
+    """The best text there was."""
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A path for which nothing could be written. The same call tries it again."""
+
+    path_id: str
+    kind: str
+    """missing, broken or lost."""
+    reason: str
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run folder. In a notebook its first instructions are shown as cards."""
+
+    folder: pathlib.Path
+    instructions: tuple[Instruction, ...]
+    rejected: tuple[Rejected, ...]
+    errors: tuple[Failed, ...]
+    platform: Mapping[str, str] = field(default_factory=dict, repr=False)
+    """What the run was made on: `platform`, and where it has them `data` and `at`."""
+    summary: Mapping[str, Any] | None = field(default=None, repr=False)
+    """What `generate` said at its end; `None` for a run that was loaded."""
+
+    def __len__(self) -> int:
+        return len(self.instructions)
+
+    def __iter__(self) -> Iterator[Instruction]:
+        return iter(self.instructions)
+
+    def __getitem__(self, at: int) -> Instruction:
+        return self.instructions[at]
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One flat dictionary for each instruction, with the columns of the data frame."""
+        return [_row(instruction) for instruction in self.instructions]
+
+    def to_pandas(self) -> Any:
+        """The instructions as a `pandas.DataFrame`, a row each.
+
+        Columns: platform, scene, path_id, split, style, text, verdict, length_m (metres), viewpoints (names),
+        positions (list of [x, y, z], metres), headings_rad, target, target_object, ends (places that the text may
+        mean), writer, answerer, checked_against, repairs, seed.
+
+        Raises:
+            MissingExtraError: if pandas is not installed.
+        """
+        return extra("pandas", "pandas").DataFrame(self.rows(), columns=list(COLUMNS))
+
+    def to_datasets(self) -> Any:
+        """The same as a `datasets.Dataset`.
+
+        Raises:
+            MissingExtraError: if datasets is not installed.
+        """
+        rows = self.rows()
+        columns = {name: [row[name] for row in rows] for name in COLUMNS}
+        return extra("datasets", "datasets").Dataset.from_dict(columns)
+
+    def _repr_html_(self) -> str:
+        return notebook.page(self)
+
+
+COLUMNS = (
+    "platform",
+    "scene",
+    "path_id",
+    "split",
+    "style",
+    "text",
+    "verdict",
+    "length_m",
+    "viewpoints",
+    "positions",
+    "headings_rad",
+    "target",
+    "target_object",
+    "ends",
+    "writer",
+    "answerer",
+    "checked_against",
+    "repairs",
+    "seed",
+)
+"""The columns of `Run.to_pandas`."""
+
+
+def _row(instruction: Instruction) -> dict[str, Any]:
+    path, made = instruction.path, instruction.provenance
+    return {
+        "platform": instruction.platform,
+        "scene": path.scene,
+        "path_id": path.id,
+        "split": instruction.split,
+        "style": instruction.style,
+        "text": instruction.text,
+        "verdict": instruction.verdict,
+        "length_m": path.length_m,
+        "viewpoints": path.viewpoints,
+        "positions": path.positions.tolist(),
+        "headings_rad": path.headings_rad.tolist(),
+        "target": path.target,
+        "target_object": path.target_object,
+        "ends": (instruction.ambiguity or {}).get("ends"),
+        "writer": made.get("writer"),
+        "answerer": made.get("answerer"),
+        "checked_against": made.get("checked_against"),
+        "repairs": made.get("repairs"),
+        "seed": made.get("seed"),
+    }
+
+
+def load_run(folder: PathLike) -> Run:
+    """Reads a run folder, as `wayword generate` makes it.
+
+    Raises:
+        FileError: if it is no run folder, or a file cannot be read.
+        FormatError: if a line is not of its format; `where` names file and line.
+    """
+    root = pathlib.Path(folder)
+    if not (root / "config.toml").is_file():
+        hint = "give the folder that `wayword.generate` was given as `out`"
+        raise errors.FileError("it is no run folder: it holds no config.toml", str(root), hint)
+    captions = {walk["path"]["id"]: _captions(walk) for walk in _lines(root / "walks.jsonl")}
+    made = [
+        _read(root, "instructions.jsonl", at, line, captions)
+        for at, line in enumerate(_lines(root / "instructions.jsonl"))
+    ]
+    rejected = [_rejected(line) for line in _lines(root / "rejected.jsonl")]
+    failed = [
+        Failed(line["item"], line.get("failure", "lost"), line["reason"]) for line in _lines(root / "errors.jsonl")
+    ]
+    return Run(root, tuple(made), tuple(rejected), tuple(failed), _platform(root / "config.toml"))
+
+
+def _platform(config: pathlib.Path) -> dict[str, str]:
+    found = {}
+    for line in config.read_text(encoding="utf-8").splitlines():
+        name, _, value = line.partition(" = ")
+        if line.startswith("["):
+            break
+        if name in ("platform", "data", "at"):
+            found[name] = str(json.loads(value))  # The program writes texts as JSON does.
+    return found
+
+
+def _lines(file: pathlib.Path) -> Iterator[dict[str, Any]]:
+    if not file.exists():
+        return
+    with open(file, encoding="utf-8") as lines:
+        for number, line in enumerate(lines, 1):
+            try:
+                value = json.loads(line)
+            except ValueError as error:
+                if not line.endswith("\n"):
+                    return  # A run that was killed, or is running: its last line is not whole yet.
+                raise errors.FormatError(f"it is not JSON: {error}", f"{file}: line {number}", _AGAIN) from error
+            if not isinstance(value, dict):
+                raise errors.FormatError("it is not a JSON object", f"{file}: line {number}", _AGAIN)
+            yield value
+
+
+_AGAIN = "the file was changed by hand or by another program: make the run again in another folder"
+
+
+def _captions(walk: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(seen.get("summary", "") for seen in walk.get("observations", ()))
+
+
+def _read(
+    root: pathlib.Path, name: str, at: int, line: Mapping[str, Any], captions: Mapping[str, tuple[str, ...]]
+) -> Instruction:
+    if line.get("format") != FORMAT:
+        problem = f"its format is {line.get('format')!r}, and this version reads {FORMAT!r}"
+        hint = "read it with the version of Wayword that wrote it"
+        raise errors.FormatError(problem, f"{root / name}: line {at + 1}", hint)
+    try:
+        path = _path(line["path"])
+        return instruction(line, path, captions.get(path.id, ()), root)
+    except (KeyError, TypeError, ValueError) as error:
+        problem = f"a field is missing or wrong ({type(error).__name__}: {error})"
+        raise errors.FormatError(problem, f"{root / name}: line {at + 1}", _AGAIN) from error
+
+
+def instruction(
+    line: Mapping[str, Any], path: Path, captions: Sequence[str], folder: pathlib.Path | None
+) -> Instruction:
+    """An instruction from its JSON object."""
+    findings = [Finding(f["check"], f["verdict"], f.get("reason", ""), _span(f.get("span"))) for f in line["findings"]]
+    mentions = [Mention((m["span"][0], m["span"][1]), m["kind"], m["frame"]) for m in line["mentions"]]
+    return Instruction(
+        text=line["text"],
+        style=line["style"],
+        verdict=line["verdict"],
+        platform=line.get("platform", ""),
+        path=path,
+        findings=tuple(findings),
+        mentions=tuple(mentions),
+        ambiguity=line.get("ambiguity"),
+        provenance=line["provenance"],
+        split=line.get("split"),
+        captions=tuple(captions),
+        folder=folder,
+    )
+
+
+def _span(span: Sequence[int] | None) -> tuple[int, int] | None:
+    return None if span is None else (span[0], span[1])
+
+
+def _path(value: Mapping[str, Any]) -> Path:
+    target = value.get("target") or {}
+    return Path(
+        id=value["id"],
+        scene=value["scene"],
+        frames=tuple(_frame(frame) for frame in value["frames"]),
+        target=target.get("name"),
+        target_object=target.get("object"),
+        has_poses=value.get("motion", "known") == "known",
+    )
+
+
+def _frame(value: Mapping[str, Any]) -> Frame:
+    pose = value["pose"]
+    x, y, z = pose["position"]
+    return Frame(
+        position=(x, y, z),
+        heading_rad=pose["heading"],
+        elevation_rad=pose["elevation_rad"],
+        viewpoint=value.get("viewpoint"),
+        level=value.get("level"),
+    )
+
+
+def _rejected(line: Mapping[str, Any]) -> Rejected:
+    last = line.get("last")
+    path = Path(line["item"], "", ())
+    text = None if last is None else instruction(last, path, (), None)
+    return Rejected(line["item"], line["style"], line["reason"], text)
