@@ -12,7 +12,8 @@ import textwrap
 import unittest
 
 KIT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
-sys.path.insert(0, KIT)
+# Behind what is installed, if anything is.
+sys.path.append(KIT)
 
 import wayword.platform as kit  # noqa: E402
 

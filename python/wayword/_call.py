@@ -7,6 +7,7 @@ import json
 import logging
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any, Union
 
@@ -95,6 +96,10 @@ def opened(
     return _inside(platform)
 
 
+# A world is known by the name of its class, so that a run can be continued: two of one name take turns.
+_WORLDS = threading.RLock()
+
+
 @contextlib.contextmanager
 def _inside(world: Platform) -> Iterator[dict[str, Any]]:
     from . import _wayword
@@ -103,8 +108,10 @@ def _inside(world: Platform) -> Iterator[dict[str, Any]]:
         hint = "give a name from `wayword platforms`, or an object of a subclass of wayword.Platform"
         raise errors.InputError(f"platform {world!r} is no world", hint=hint)
     name = type(world).__name__
-    data = _wayword.put_world(name, lambda line: answer(world, json.loads(line)).encode())
-    try:
-        yield {"platform": "process", "data": os.fspath(data), "at": None, "island": None}
-    finally:
-        _wayword.forget_world(data)
+    sizes = (world.width_px, world.height_px, world.spacing_m)
+    with _WORLDS:
+        data = _wayword.put_world(name, lambda line: answer(world, json.loads(line)).encode(), *sizes)
+        try:
+            yield {"platform": "process", "data": os.fspath(data), "at": None, "island": None}
+        finally:
+            _wayword.forget_world(data)

@@ -100,7 +100,8 @@ def card(instruction: Instruction) -> str:
     wrong = "".join(
         f"<li>{html.escape(finding.check)}: {html.escape(finding.reason)}</li>"
         for finding in instruction.findings
-        if finding.verdict != "pass" and finding.reason
+        # A text passes although a check could not be made, and the card of such a text stays short.
+        if finding.reason and finding.verdict != "pass" and instruction.verdict != "pass"
     )
     frames = "".join(_frame(instruction, at) for at in _spread(len(path.frames)))
     return (
@@ -128,9 +129,10 @@ def _frame(instruction: Instruction, at: int) -> str:
     if picture is not None:
         data = base64.b64encode(picture).decode()
         image = f'<img style="width:150px;border-radius:4px" alt="frame {at}" src="data:image/jpeg;base64,{data}">'
+    clamp = "display:-webkit-box;-webkit-box-orient:vertical;-webkit-line-clamp:3;overflow:hidden"
     return (
-        f'<figure style="margin:0;flex:0 0 150px;font-size:75%">{image}'
-        f"<figcaption><b>{at}</b> {html.escape(caption)}</figcaption></figure>"
+        f'<figure style="margin:0;flex:0 0 150px;font-size:75%" title="{html.escape(caption)}">{image}'
+        f'<figcaption style="{clamp}"><b>{at}</b> {html.escape(caption)}</figcaption></figure>'
     )
 
 

@@ -135,6 +135,9 @@ class Platform:
     has_labels = False  # each View has labels; an empty list means that no object is visible
     has_rooms = False  # a View may name the room
     images: Optional[str] = None  # folder of the pictures that are sent as files
+    # Of an object that is given to `wayword.generate`; for a child process the world file says them.
+    width_px, height_px = 640, 480  # of pictures
+    spacing_m = 1.0  # between viewpoints, where Wayword makes the graph
 
     def scenes(self) -> Sequence[str]:
         """The names of the scenes."""

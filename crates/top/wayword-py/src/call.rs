@@ -8,6 +8,7 @@ use std::{
     ffi::OsString,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
         mpsc::{RecvTimeoutError, channel},
     },
     thread,
@@ -27,8 +28,28 @@ const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
 const STACK: usize = 8 << 20;
 
-/// Commands run one at a time, because an interrupt means the one that runs.
-static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+/// Whether a command runs. They run one at a time, because an interrupt means the one that runs.
+static RUNS: AtomicBool = AtomicBool::new(false);
+
+/// The turn of a command.
+struct Turn;
+
+impl Turn {
+    /// Waits for other commands to end. A signal that Python received is raised here.
+    fn wait(py: Python<'_>) -> PyResult<Self> {
+        while RUNS.swap(true, Ordering::Acquire) {
+            py.detach(|| thread::sleep(LOOK_EVERY));
+            py.check_signals()?;
+        }
+        Ok(Self)
+    }
+}
+
+impl Drop for Turn {
+    fn drop(&mut self) {
+        RUNS.store(false, Ordering::Release);
+    }
+}
 
 /// Runs the program with its name and arguments. Returns the exit code.
 #[pyfunction]
@@ -119,8 +140,8 @@ fn waited<T: Send>(
     hears: &Py<PyAny>,
     work: impl FnOnce() -> Result<T, Error> + Send,
 ) -> PyResult<Result<T, Error>> {
+    let _turn = Turn::wait(py)?;
     let (done, raised) = py.detach(|| {
-        let _alone = lock(&ONE_AT_A_TIME);
         interrupt::forget();
         thread::scope(|scope| {
             let (ends, ended) = channel::<()>();

@@ -4,13 +4,13 @@ use crate::raise::{raised, raised_of};
 use pyo3::{
     intern,
     prelude::*,
-    types::{PyBytes, PyDict, PyList, PySequence, PyString, PyTuple},
+    types::{PyBytes, PyDict, PyList, PyString, PyTuple},
 };
 use std::{ops::Range, path::PathBuf};
 use wayword::{
     episodes,
     error::Error,
-    judge::{Judge as Episodes, Problems, Scores as Figures},
+    judge::{Judge as Episodes, Problems, Scores as Figures, Scoring},
     platforms,
 };
 use wayword_metrics::{Metric, Rule};
@@ -47,17 +47,17 @@ impl Judge {
     /// The figures of trajectories: a list of `{"instr_id", "trajectory", "predObjId"}`, or a mapping from instructions to
     /// trajectories.
     fn score(&self, py: Python<'_>, submission: &Bound<'_, PyAny>, partial: bool) -> PyResult<Scores> {
-        let submission = Submission::read(submission)?;
-        let scored = py.detach(|| {
-            let mut scoring = self.0.begin();
-            for one in &submission.trajectories {
-                let names = submission.steps[one.steps.clone()].iter().map(|step| submission.text(step));
-                scoring.take(
-                    submission.text(&one.name),
-                    names,
-                    one.object.as_ref().map(|object| submission.text(object)),
-                );
+        let mut scoring = self.0.begin();
+        let mut handed = Part::default();
+        each_trajectory(submission, |name, trajectory, object| {
+            handed.take(name, trajectory, object)?;
+            if handed.trajectories.len() == PART {
+                py.detach(|| handed.score(&mut scoring));
             }
+            Ok(())
+        })?;
+        let scored = py.detach(|| {
+            handed.score(&mut scoring);
             scoring.end(Problems::default(), partial)
         });
         scored.map(Scores).map_err(|problems| refused(py, &problems))
@@ -75,9 +75,44 @@ fn refused(py: Python<'_>, problems: &Problems) -> PyErr {
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
-/// What Python handed in, copied, so that the interpreter can be released while it is scored.
+/// The exception for a trajectory that cannot be read.
+fn unread(py: Python<'_>, at: usize, what: &str) -> PyErr {
+    let hint = "give {\"instr_id\": ..., \"trajectory\": [...]}, and \"predObjId\" where an object is named";
+    raised_of(py, "submission", (what.to_owned(), Some(format!("trajectory {at}")), Some(hint.to_owned())))
+}
+
+/// Hands on the name, the trajectory and the object of each entry.
+fn each_trajectory<'py>(
+    submission: &Bound<'py, PyAny>,
+    mut take: impl FnMut(&Bound<'py, PyAny>, &Bound<'py, PyAny>, Option<&Bound<'py, PyAny>>) -> PyResult<()>,
+) -> PyResult<()> {
+    let py = submission.py();
+    let flawed = |at: usize| move |error: PyErr| unread(py, at, &error.to_string());
+    if let Ok(mapping) = submission.cast::<PyDict>() {
+        for (at, (name, trajectory)) in mapping.iter().enumerate() {
+            take(&name, &trajectory, None).map_err(flawed(at))?;
+        }
+        return Ok(());
+    }
+    for (at, entry) in submission.try_iter()?.enumerate() {
+        let entry = entry?;
+        let entry = entry.cast::<PyDict>().map_err(|_| unread(py, at, "it is no dictionary"))?;
+        let needed = |field: &Bound<'py, PyString>| {
+            entry.get_item(field)?.ok_or_else(|| unread(py, at, &format!("it has no {field}")))
+        };
+        let (name, trajectory) = (needed(intern!(py, "instr_id"))?, needed(intern!(py, "trajectory"))?);
+        let object = entry.get_item(intern!(py, "predObjId"))?.filter(|object| !object.is_none());
+        take(&name, &trajectory, object.as_ref()).map_err(flawed(at))?;
+    }
+    Ok(())
+}
+
+/// How many trajectories are copied before they are scored: few, so that the copies stay in the processor's cache.
+const PART: usize = 256;
+
+/// A part of what Python handed in, copied, so that the interpreter can be released while it is scored.
 #[derive(Default)]
-struct Submission {
+struct Part {
     /// All names, one after the other.
     names: String,
     /// The viewpoints of all trajectories.
@@ -92,31 +127,16 @@ struct Handed {
     object: Option<Range<usize>>,
 }
 
-impl Submission {
-    fn read(given: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let mut read = Self::default();
-        let py = given.py();
-        if let Ok(mapping) = given.cast::<PyDict>() {
-            for (name, trajectory) in mapping.iter() {
-                read.take(&name, &trajectory, None)?;
-            }
-            return Ok(read);
+impl Part {
+    /// Scores the trajectories, and is empty afterwards.
+    fn score(&mut self, scoring: &mut Scoring<'_>) {
+        for one in &self.trajectories {
+            let names = self.steps[one.steps.clone()].iter().map(|step| self.text(step));
+            scoring.take(self.text(&one.name), names, one.object.as_ref().map(|object| self.text(object)));
         }
-        for (at, entry) in given.try_iter()?.enumerate() {
-            let entry = entry?;
-            let field = |field| -> PyResult<Option<Bound<'_, PyAny>>> { entry.cast::<PyDict>()?.get_item(field) };
-            let lacks = |what: &str| {
-                let hint =
-                    "give {\"instr_id\": ..., \"trajectory\": [...]}, and \"predObjId\" where an object is named";
-                let what = format!("it has no {what}");
-                raised_of(py, "submission", (what, Some(format!("trajectory {at}")), Some(hint.to_owned())))
-            };
-            let name = field(intern!(py, "instr_id"))?.ok_or_else(|| lacks("instr_id"))?;
-            let trajectory = field(intern!(py, "trajectory"))?.ok_or_else(|| lacks("trajectory"))?;
-            let object = field(intern!(py, "predObjId"))?.filter(|object| !object.is_none());
-            read.take(&name, &trajectory, object.as_ref())?;
-        }
-        Ok(read)
+        self.names.clear();
+        self.steps.clear();
+        self.trajectories.clear();
     }
 
     fn take(
@@ -144,21 +164,21 @@ impl Submission {
 
     /// Takes a viewpoint, a viewpoint with angles, or several viewpoints, as VLN-DUET gives them.
     fn step(&mut self, step: &Bound<'_, PyAny>) -> PyResult<()> {
-        if step.is_instance_of::<PyString>() {
+        let is_more = if let Ok(pose) = step.cast::<PyTuple>() {
+            // Borrowed, because a submission has many steps.
+            let first = pose.get_borrowed_item(0)?;
+            self.viewpoint(&first)?;
+            pose.len() > 1 && pose.get_borrowed_item(1)?.is_instance_of::<PyString>()
+        } else if step.is_instance_of::<PyString>() {
             return self.viewpoint(step);
-        }
-        let (first, second) = if let Ok(pose) = step.cast::<PyTuple>() {
-            (pose.get_item(0)?, pose.get_item(1).ok())
-        } else if let Ok(pose) = step.cast::<PyList>() {
-            (pose.get_item(0)?, pose.get_item(1).ok())
         } else {
-            let pose = step.cast::<PySequence>()?;
-            (pose.get_item(0)?, pose.get_item(1).ok())
+            let pose = step.cast::<PyList>()?;
+            self.viewpoint(&pose.get_item(0)?)?;
+            pose.len() > 1 && pose.get_item(1)?.is_instance_of::<PyString>()
         };
-        self.viewpoint(&first)?;
-        if second.is_some_and(|second| second.is_instance_of::<PyString>()) {
-            for further in step.try_iter()?.skip(1) {
-                self.viewpoint(&further?)?;
+        if is_more {
+            for viewpoint in step.try_iter()?.skip(1) {
+                self.viewpoint(&viewpoint?)?;
             }
         }
         Ok(())

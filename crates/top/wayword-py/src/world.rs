@@ -1,5 +1,6 @@
 //! Worlds that are Python objects.
 
+use crate::raise::raised_of;
 use pyo3::{prelude::*, types::PyBytes};
 use std::path::PathBuf;
 use wayword::platforms::{forget_inside, put_inside};
@@ -10,12 +11,13 @@ use wayword_platforms::process::{Inside, ProcessOptions};
 #[pyfunction]
 #[pyo3(signature = (name, answer, width_px=None, height_px=None, spacing_m=None))]
 pub(crate) fn put_world(
+    py: Python<'_>,
     name: &str,
     answer: Py<PyAny>,
     width_px: Option<u32>,
     height_px: Option<u32>,
     spacing_m: Option<f64>,
-) -> PathBuf {
+) -> PyResult<PathBuf> {
     let inside = Inside::new(move |request| {
         Python::attach(|py| {
             let answered = answer.call1(py, (PyBytes::new(py, request),)).and_then(|line| line.extract::<Vec<u8>>(py));
@@ -23,10 +25,9 @@ pub(crate) fn put_world(
             answered.unwrap_or_else(|error| error.to_string().into_bytes())
         })
     });
-    let options = ProcessOptions::inside(name, inside);
-    let (width_px, height_px) = (width_px.unwrap_or(options.width_px), height_px.unwrap_or(options.height_px));
-    let spacing_m = spacing_m.unwrap_or(options.spacing_m);
-    put_inside(name, ProcessOptions { width_px, height_px, spacing_m, ..options })
+    let options = ProcessOptions::inside(name, inside).sized(width_px, height_px, spacing_m);
+    let refused = |reason| raised_of(py, "platform", (reason, Some(name.to_owned()), None));
+    Ok(put_inside(name, options.map_err(refused)?))
 }
 
 /// Forgets a world.

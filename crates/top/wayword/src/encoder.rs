@@ -1,6 +1,6 @@
 //! Sentence encoders by their names, and texts as vectors.
 
-use crate::{error::Error, output::Output};
+use crate::{error::Error, interrupt, output::Output};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{ModelError, TextEncoder};
 use wayword_metrics::Words;
@@ -43,6 +43,7 @@ pub fn vectors<'a>(
     let mut vectors = BTreeMap::new();
     let mut numbers = None;
     for batch in texts.chunks(BATCH) {
+        interrupt::check()?;
         let found = encoder.encode(batch)?;
         let expected = *numbers.get_or_insert_with(|| found.first().map_or(0, Vec::len));
         let fits = |vector: &Vec<f32>| vector.len() == expected && vector.iter().all(|number| number.is_finite());

@@ -14,7 +14,7 @@ const SUCCESS_M: f64 = 3.0;
 /// A demand for many trajectories: everything that no trajectory changes is looked up once.
 #[derive(Debug, Clone)]
 pub struct Course {
-    start: ViewpointId,
+    start: usize,
     /// The annotated path; never empty.
     path: Vec<usize>,
     path_m: f64,
@@ -32,18 +32,16 @@ impl Course {
     /// Each problem of the annotated path.
     pub fn new(distances: &Distances, demand: &Demand) -> Result<Self, Vec<Invalid>> {
         let path = path(distances, demand)?;
-        let (Some(start), [first, .., last] | [first @ last]) = (demand.reference.first(), &path[..]) else {
-            return Err(vec![Invalid::NoReference]);
-        };
+        let ([start, .., goal] | [start @ goal]) = path[..] else { return Err(vec![Invalid::NoReference]) };
         let seen = demand.visible_from.as_ref().filter(|_| demand.object.is_some());
         let places = |from: &BTreeSet<ViewpointId>| {
             // Places are numbered in the order of their names, so these are in order too.
             from.iter().filter_map(|viewpoint| distances.place(viewpoint.as_str())).collect()
         };
         Ok(Self {
-            start: start.clone(),
+            start,
             path_m: length_m(distances, &path),
-            shortest_m: distances.between(*first, *last),
+            shortest_m: distances.between(start, goal),
             object: demand.object.clone(),
             visible_from: seen.map(places),
             path,
@@ -61,7 +59,7 @@ impl Course {
         names: impl Iterator<Item = &'n str> + Clone,
         object: Option<&str>,
     ) -> Result<Score, Vec<Invalid>> {
-        let taken = walked(distances, Some(&self.start), names)?;
+        let taken = walked(distances, Some(self.start), names)?;
         let apart = Apart::new(distances, &taken, &self.path);
         let length_m = length_m(distances, &taken);
         let weight = efficiency(self.shortest_m, length_m);

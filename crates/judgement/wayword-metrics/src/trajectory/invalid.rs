@@ -59,7 +59,8 @@ pub enum Invalid {
 pub fn problems(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Vec<Invalid> {
     let mut wrong = path(distances, demand).err().unwrap_or_default();
     let names = trajectory.viewpoints.iter().map(ViewpointId::as_str);
-    wrong.extend(walked(distances, demand.reference.first(), names).err().into_iter().flatten());
+    let start = demand.reference.first().and_then(|start| distances.place(start.as_str()));
+    wrong.extend(walked(distances, start, names).err().into_iter().flatten());
     wrong
 }
 
@@ -82,14 +83,13 @@ pub(super) fn path(distances: &Distances, demand: &Demand) -> Result<Vec<usize>,
 /// The places of a trajectory; never empty, and the first is `start`, where that is known.
 pub(super) fn walked<'n>(
     distances: &Distances,
-    start: Option<&ViewpointId>,
+    start: Option<usize>,
     names: impl Iterator<Item = &'n str> + Clone,
 ) -> Result<Vec<usize>, Vec<Invalid>> {
-    let mut places = Vec::with_capacity(names.size_hint().0);
-    places.extend(names.clone().map(|name| distances.place(name).unwrap_or(NOWHERE)));
-    let starts = match (names.clone().next(), start) {
-        (Some(found), Some(start)) => found == start.as_str(),
-        (found, _) => found.is_some(),
+    let places: Vec<usize> = names.clone().map(|name| distances.place(name).unwrap_or(NOWHERE)).collect();
+    let starts = match (places.first(), start) {
+        (Some(first), Some(start)) => *first == start,
+        (first, _) => first.is_some(),
     };
     let is_broken = |hop: &[usize]| hop[0] != hop[1] && !distances.joins(hop[0], hop[1]);
     if starts && !places.contains(&NOWHERE) && !places.windows(2).any(is_broken) {
@@ -99,14 +99,14 @@ pub(super) fn walked<'n>(
 }
 
 /// Every problem of a trajectory.
-fn wrong_with(distances: &Distances, start: Option<&ViewpointId>, places: &[usize], names: &[&str]) -> Vec<Invalid> {
+fn wrong_with(distances: &Distances, start: Option<usize>, places: &[usize], names: &[&str]) -> Vec<Invalid> {
     let unknown = places.iter().zip(names).enumerate().filter(|(_, (place, _))| **place == NOWHERE);
     let mut wrong: Vec<Invalid> =
         unknown.map(|(step, (_, name))| Invalid::Unknown { step, viewpoint: (*name).to_owned() }).collect();
-    match (names.first(), start) {
+    match (places.iter().zip(names).next(), start) {
         (None, _) => wrong.push(Invalid::Empty),
-        (Some(found), Some(start)) if *found != start.as_str() => {
-            wrong.push(Invalid::Start { found: (*found).to_owned(), expected: start.clone() });
+        (Some((first, found)), Some(start)) if *first != start => {
+            wrong.push(Invalid::Start { found: (*found).to_owned(), expected: distances.name(start).clone() });
         }
         _ => {}
     }

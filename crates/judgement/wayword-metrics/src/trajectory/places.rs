@@ -10,14 +10,23 @@ use wayword_core::ViewpointId;
 pub(super) struct Places {
     /// The first bytes of each name, as a number that sorts as they do.
     heads: Vec<u64>,
+    /// The next bytes of each, so that a short name need not be fetched from elsewhere. A longer one has bytes here that no
+    /// text has.
+    tails: Vec<[u8; TAIL]>,
     names: Vec<ViewpointId>,
 }
+
+/// How many bytes come first, and then: together the length of Matterport's names.
+const HEAD: usize = 8;
+const TAIL: usize = 24;
 
 impl Places {
     pub(super) fn new<'a>(names: impl Iterator<Item = &'a ViewpointId>) -> Self {
         let mut names: Vec<ViewpointId> = names.cloned().collect();
         names.sort_unstable();
-        Self { heads: names.iter().map(|name| head(name.as_str())).collect(), names }
+        let heads = names.iter().map(|name| head(name.as_str())).collect();
+        let kept = |name: &ViewpointId| if is_short(name.as_str()) { tail(name.as_str()) } else { [u8::MAX; TAIL] };
+        Self { heads, tails: names.iter().map(kept).collect(), names }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -31,7 +40,8 @@ impl Places {
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         let head = head(name);
         let first = self.heads.partition_point(|other| *other < head);
-        if self.names.get(first)?.as_str() == name {
+        // Names have no zeros, so one that is filled up with them is no other's beginning.
+        if is_short(name) && *self.heads.get(first)? == head && self.tails[first] == tail(name) {
             return Some(first);
         }
         // Names may begin alike.
@@ -41,14 +51,25 @@ impl Places {
     }
 }
 
+fn is_short(name: &str) -> bool {
+    name.len() <= HEAD + TAIL
+}
+
 fn head(name: &str) -> u64 {
-    let bytes = name.as_bytes();
-    let head = bytes.first_chunk().copied().unwrap_or_else(|| {
-        let mut head = [0; 8];
-        head[..bytes.len()].copy_from_slice(bytes);
-        head
-    });
-    u64::from_be_bytes(head)
+    u64::from_be_bytes(filled::<HEAD>(name.as_bytes()))
+}
+
+fn tail(name: &str) -> [u8; TAIL] {
+    filled(name.as_bytes().get(HEAD..).unwrap_or_default())
+}
+
+/// The first bytes, filled up with zeros.
+fn filled<const N: usize>(bytes: &[u8]) -> [u8; N] {
+    bytes.first_chunk().copied().unwrap_or_else(|| {
+        let mut filled = [0; N];
+        filled[..bytes.len()].copy_from_slice(bytes);
+        filled
+    })
 }
 
 #[cfg(test)]
@@ -60,8 +81,8 @@ mod tests {
         /// Names of few letters, of which many begin alike, and some are the beginning of others.
         #[test]
         fn every_name_is_found_where_it_sorts_and_no_other(
-            names in prop::collection::btree_set("[ab]{0,3}(long_head)?[ab]{1,4}", 0..40),
-            other in "[ab]{0,3}(long_head)?[ab]{1,4}",
+            names in prop::collection::btree_set("[ab]{0,3}(long_head)?(and_a_tail_of_32_bytes)?[ab]{1,4}", 0..40),
+            other in "[ab]{0,3}(long_head)?(and_a_tail_of_32_bytes)?[ab]{1,4}",
         ) {
             let ids: Vec<ViewpointId> = names.iter().rev().map(|name| ViewpointId::new(name).unwrap()).collect();
             let places = Places::new(ids.iter());

@@ -72,10 +72,17 @@ impl Judge {
         Scoring {
             judge: self,
             seen: vec![false; self.instructions.len()],
-            rows: Vec::new(),
+            next: 0,
+            rows: Vec::with_capacity(self.instructions.len()),
             unknown: Problems::default(),
             wrong: Vec::new(),
         }
+    }
+
+    /// The place of an instruction, which may be `likely`.
+    fn find(&self, instruction: &str, likely: usize) -> Option<usize> {
+        let is_it = self.instructions.get(likely).is_some_and(|known| known.name == instruction);
+        if is_it { Some(likely) } else { self.places.get(instruction).copied() }
     }
 
     fn score<'n>(
@@ -94,6 +101,8 @@ pub struct Scoring<'j> {
     judge: &'j Judge,
     /// The instructions that were handed in, scored or not.
     seen: Vec<bool>,
+    /// The place after that of the last one: submissions are mostly in the order of the episodes.
+    next: usize,
     rows: Vec<Scored>,
     unknown: Problems,
     /// The instructions whose trajectory is wrong, and why.
@@ -126,11 +135,12 @@ impl Scoring<'_> {
 
     /// The place of an instruction that is handed in for the first time; a problem elsewhere.
     fn place(&mut self, instruction: &str) -> Option<usize> {
-        let Some(place) = self.judge.places.get(instruction).copied() else {
+        let Some(place) = self.judge.find(instruction, self.next) else {
             let problem = "the episodes have no such instruction: check the split, and the ids";
             self.unknown.add(|| Problem::new(instruction.to_owned(), problem));
             return None;
         };
+        self.next = place + 1;
         if std::mem::replace(&mut self.seen[place], true) {
             self.mark(place, "the submission has another trajectory for this instruction: give one".to_owned());
             return None;

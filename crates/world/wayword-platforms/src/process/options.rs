@@ -109,6 +109,20 @@ impl ProcessOptions {
         Self { inside: Some(world), ..Self::new(name) }
     }
 
+    /// The same with pictures of another size, and another distance between viewpoints that Wayword makes. What is not given
+    /// stays.
+    ///
+    /// # Errors
+    /// Which of them is beyond what is allowed.
+    pub fn sized(self, width_px: Option<u32>, height_px: Option<u32>, spacing_m: Option<f64>) -> Result<Self, String> {
+        Ok(Self {
+            width_px: side(width_px, self.width_px, "width_px")?,
+            height_px: side(height_px, self.height_px, "height_px")?,
+            spacing_m: within(spacing_m, self.spacing_m, 0.2..=10.0, "spacing_m")?,
+            ..self
+        })
+    }
+
     /// A program without arguments, with the default settings: pictures of 640x480, viewpoints 1 m apart, 3 minutes to
     /// start, 1 minute to answer, 5 restarts, no guard.
     #[must_use]
@@ -161,13 +175,10 @@ impl WorldFile {
         let program = PathBuf::from(command.next().ok_or("\"command\" is empty")?);
         // A bare name is searched in PATH; a path is relative to the world file's folder.
         let program = if program.components().count() > 1 { folder.join(program) } else { program };
-        let default = ProcessOptions::new(program);
+        let default = ProcessOptions::new(program).sized(self.width_px, self.height_px, self.spacing_m)?;
         Ok(ProcessOptions {
             arguments: command.collect(),
             folder: Some(folder.to_owned()),
-            width_px: side(self.width_px, default.width_px, "width_px")?,
-            height_px: side(self.height_px, default.height_px, "height_px")?,
-            spacing_m: within(self.spacing_m, default.spacing_m, 0.2..=10.0, "spacing_m")?,
             start_within: wait(self.start_within_s, default.start_within, "start_within_s")?,
             answer_within: wait(self.answer_within_s, default.answer_within, "answer_within_s")?,
             restarts: self.restarts.unwrap_or(default.restarts),

@@ -13,6 +13,7 @@ use crate::{
     doubts::doubts,
     error::{Error, Exit},
     follow::{Followed, KnownScenes, Told, rejection},
+    interrupt,
     looking_for::Lookout,
     output::Output,
     pipeline::panoramas,
@@ -166,6 +167,7 @@ impl Checking<'_> {
         let checked: Vec<_> = walks
             .par_iter()
             .map(|walk| {
+                interrupt::check()?;
                 let checked = self.check(walk);
                 bar.inc(1);
                 checked
