@@ -234,7 +234,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             output.error(&error);
-            error.exit_code().into()
+            (error.exit_code() as u8).into()
         }
     }
 }

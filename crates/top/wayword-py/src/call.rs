@@ -53,7 +53,6 @@ impl Drop for Turn {
 
 /// Runs the program with its name and arguments. Returns the exit code.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
 pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>, guardian: (OsString, Vec<OsString>)) -> u8 {
     say_how_to_start(guardian);
     py.detach(|| wayword::main(arguments))
@@ -62,7 +61,6 @@ pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>, guardian: (OsString
 /// Runs a command inside the interpreter. `arguments` begin with the name of the command. `hears` has the methods `say(text)`
 /// and `progress(done, total, text)`. Returns the exit code and the result as JSON.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
 pub(crate) fn call(
     py: Python<'_>,
     arguments: Vec<OsString>,

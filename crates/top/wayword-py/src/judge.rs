@@ -23,7 +23,6 @@ pub(crate) struct Judge(Episodes);
 impl Judge {
     #[new]
     #[pyo3(signature = (episodes, platform, data=None, at=None, island=None))]
-    #[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
     fn new(
         py: Python<'_>,
         episodes: PathBuf,
@@ -202,6 +201,9 @@ impl Part {
     }
 }
 
+/// Mean, low, high, trajectories, paths.
+type Interval = (f64, f64, f64, usize, usize);
+
 /// The figures of trajectories, in the order of the episodes.
 #[pyclass(frozen, module = "wayword._wayword")]
 pub(crate) struct Scores(Figures);
@@ -244,7 +246,7 @@ impl Scores {
         Ok(py.detach(|| self.0.mean(metric, rule)))
     }
 
-    /// The mean with its 95 % interval: mean, low, high, trajectories, paths.
+    /// The mean with its 95 % interval.
     fn estimate(
         &self,
         py: Python<'_>,
@@ -252,7 +254,7 @@ impl Scores {
         rule: &str,
         resamples: usize,
         seed: u64,
-    ) -> PyResult<Option<(f64, f64, f64, usize, usize)>> {
+    ) -> PyResult<Option<Interval>> {
         let (metric, rule): (Metric, Rule) = (named(py, metric)?, named(py, rule)?);
         let estimate = py.detach(|| self.0.estimate(metric, rule, resamples, seed));
         Ok(estimate.map(|found| (found.mean, found.low, found.high, found.values, found.clusters)))

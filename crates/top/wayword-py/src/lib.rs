@@ -2,6 +2,10 @@
 //!
 //! Architecture invariant: there is no logic here. What a call means is in the crate `wayword`, and how Python shows it in
 //! `python/wayword/`.
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "functions of a Python module own the values that were made for them"
+)]
 
 mod call;
 mod follow;

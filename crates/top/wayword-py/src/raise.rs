@@ -4,8 +4,6 @@ use pyo3::prelude::*;
 use wayword::{error::Error, explained::Explained};
 
 /// The exception of an error.
-// A closure's argument cannot be a reference where `map_err` gives the value away.
-#[allow(clippy::needless_pass_by_value)]
 pub(crate) fn raised(py: Python<'_>, error: Error) -> PyErr {
     let Explained { kind, what, place, hint } = Explained::of(&error);
     raised_of(py, kind, (what, place, hint))

@@ -32,7 +32,6 @@ pub(crate) fn put_world(
 
 /// Forgets a world.
 #[pyfunction]
-#[allow(clippy::needless_pass_by_value, reason = "Python's values are converted")]
 pub(crate) fn forget_world(data: PathBuf) {
     forget_inside(&data);
 }

@@ -56,7 +56,10 @@ pub struct ProcessOptions {
 
 /// A world within this process: an object of the interpreter that this program runs in.
 #[derive(Clone)]
-pub struct Inside(Arc<dyn Fn(&[u8]) -> Vec<u8> + Send + Sync>);
+pub struct Inside(Arc<Answers>);
+
+/// Gives the answer to a request, each a line without its end.
+type Answers = dyn Fn(&[u8]) -> Vec<u8> + Send + Sync;
 
 impl Inside {
     /// A world that answers a request with a line, as `docs/PROCESS.md` says, both without the end of the line.

@@ -2,7 +2,7 @@
 
 use super::{look, pid, started};
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     sync::{Arc, Mutex},
     time::{Duration, Instant},
 };
@@ -92,8 +92,10 @@ fn a_child_that_dies_is_told_of_while_what_it_has_started_keeps_its_output_open(
 fn a_guard_that_cannot_be_started_is_told_of_and_missed_by_nobody() {
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hear = Arc::clone(&heard);
-    let options =
-        ProcessOptions { guard: Some("/nowhere/guard".into()), ..super::options("behaves", Path::new("/nowhere")) };
+    let options = ProcessOptions {
+        guard: Some(PathBuf::from("/nowhere/guard").into()),
+        ..super::options("behaves", Path::new("/nowhere"))
+    };
     let platform =
         ProcessPlatform::start(options, Arc::new(move |line: &str| hear.lock().unwrap().push(line.to_owned())))
             .unwrap();

@@ -23,6 +23,7 @@ use wayword_formats::{
 use wayword_metrics::Rule;
 
 /// How much of the episodes a submission was scored on.
+#[derive(Clone, Copy)]
 struct Covered {
     /// All instructions, with or without a trajectory.
     instructions: usize,
