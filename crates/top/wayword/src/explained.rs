@@ -11,7 +11,8 @@ const HINT: &str = "\nhint: ";
 /// An error in parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explained {
-    /// Its kind: one of the names that [`kind`] gives.
+    /// Its kind: `input`, `file`, `format`, `platform`, `lost`, `style`, `model`, `ledger`, `walk`, `study`, `busy` or
+    /// `interrupted`.
     pub kind: &'static str,
     /// What is wrong.
     pub what: String,
@@ -69,8 +70,7 @@ fn file_of(error: &Error) -> Option<&Path> {
     }
 }
 
-/// The kind of an error: `input`, `file`, `format`, `platform`, `lost`, `style`, `model`, `ledger`, `walk`, `study`, `busy`,
-/// `interrupted`.
+/// The kind of an error, as [`Explained::kind`] lists them.
 fn kind(error: &Error) -> &'static str {
     use wayword_navigation::WalkError;
     use wayword_synthesis::observe::ObserveError;

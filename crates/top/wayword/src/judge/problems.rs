@@ -15,7 +15,7 @@ pub struct Problem {
     pub problem: String,
 }
 
-/// What is wrong, up to [`KEPT`] problems.
+/// What is wrong, up to 100,000 problems.
 #[derive(Debug, Default, Serialize)]
 pub struct Problems {
     #[serde(rename = "problems")]

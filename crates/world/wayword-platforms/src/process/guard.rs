@@ -23,7 +23,7 @@ const ROLE: &str = "guard-children";
 /// How this program is started again, where it is no executable of its own.
 static THIS_PROGRAM: OnceLock<Guardian> = OnceLock::new();
 
-/// A program that can be a guard: with [`ROLE`] as its last argument it calls [`stand_guard_if_asked`].
+/// A program that can be a guard: started with `guard-children` as its last argument, it calls [`stand_guard_if_asked`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Guardian {
     /// The executable.
