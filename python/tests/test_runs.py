@@ -120,10 +120,11 @@ def test_a_run_is_exported_to_a_format_of_the_field(houses, tmp_path):
     [
         (lambda at: wayword.load_run(at), errors.FileError, "", "out"),
         (lambda at: wayword.generate(at / "run", platform="nowhere"), errors.InputError, None, "help"),
+        (lambda at: wayword.generate(at / "run", style="--dry-run"), errors.InputError, None, "help"),
         (lambda at: wayword.generate(at / "run", colour="red"), errors.InputError, None, "help"),
         (lambda at: wayword.generate(at / "run", style="nowhere.toml"), errors.FileError, "nowhere.toml", "spelling"),
         (lambda at: wayword.generate(at / "run", platform="matterport", data=at), errors.PlatformError, "", None),
-        (lambda at: wayword.check(at / "none.json", platform="house"), errors.FormatError, "none.json", None),
+        (lambda at: wayword.check(at / "none.json", platform="house"), errors.FileError, "none.json", "spelling"),
         (lambda at: wayword.check([{"path_id": 1}], platform="house"), errors.FormatError, "texts.json", None),
         (lambda at: wayword.check(["Turn left."], platform="house"), errors.InputError, None, "R2R"),
         (lambda at: wayword.generate(at / "run", platform=object()), errors.InputError, None, "wayword.Platform"),

@@ -67,7 +67,7 @@ def command(*arguments: object, progress: Progress = None) -> Any:
 
 
 def flags(**values: object) -> list[str]:
-    """Keyword arguments as flags: `per_path=2` is `--per-path 2`, a list is repeated, `True` is the flag alone."""
+    """Keyword arguments as flags: `per_path=2` is `--per-path=2`, a list is repeated, `True` is the flag alone."""
     given: list[str] = []
     for name, value in values.items():
         flag = "--" + name.replace("_", "-")
@@ -76,12 +76,18 @@ def flags(**values: object) -> list[str]:
         if value is True:
             given.append(flag)
         elif isinstance(value, tuple) and len(value) == 2:
-            given += [flag, f"{value[0]}..{value[1]}"]
+            given.append(f"{flag}={value[0]}..{value[1]}")
         else:
             each: list[object] = list(value) if isinstance(value, (list, set, tuple)) else [value]
-            for one in each:
-                given += [flag, os.fspath(one) if isinstance(one, os.PathLike) else str(one)]
+            # With a sign of equality, so that no value is taken for a flag.
+            given += [f"{flag}={os.fspath(one) if isinstance(one, os.PathLike) else one}" for one in each]
     return given
+
+
+def file_name(path: PathLike) -> str:
+    """A path as an argument: one that begins with a hyphen is no flag."""
+    name = os.fspath(path)
+    return os.path.join(os.curdir, name) if name.startswith("-") else name
 
 
 def opened(

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from . import errors
-from ._call import PathLike, Progress, command, flags, opened
+from ._call import PathLike, Progress, command, file_name, flags, opened
 from .platform import Platform
 from .run import Finding, Run, _span
 
@@ -138,7 +138,7 @@ def _as_file(texts: Texts, style: str | None = None) -> Iterator[str]:
     if isinstance(texts, Run):
         yield str(texts.folder / "instructions.jsonl") + mark
     elif isinstance(texts, (str, os.PathLike)):
-        yield os.fspath(texts) + mark
+        yield file_name(texts) + mark
     else:
         items = list(texts)
         if not all(isinstance(item, Mapping) for item in items):

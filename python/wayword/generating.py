@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -74,7 +73,7 @@ def generate(
             config=config,
             **settings,
         )
-        summary: Mapping[str, Any] = command("generate", "--out", os.fspath(out), *given, progress=progress)
+        summary: Mapping[str, Any] = command("generate", *flags(out=out), *given, progress=progress)
     return dataclasses.replace(load_run(out), summary=summary)
 
 

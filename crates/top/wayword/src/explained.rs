@@ -34,6 +34,11 @@ impl Explained {
             hint: (!hint.is_empty()).then(|| hint.to_owned()),
         };
         match error {
+            Error::Format(FormatError::Io { file, doing, source }) => {
+                let is_missing = source.kind() == std::io::ErrorKind::NotFound;
+                let hint = if is_missing { "check the spelling of the path" } else { "" };
+                at(file, &format!("cannot {doing} it: {source}"), hint)
+            }
             Error::Format(FormatError::Document { file, problem, hint }) => at(file, problem, hint),
             Error::Format(FormatError::Item(wrong)) => {
                 let id = wrong.id.as_ref().map_or_else(String::new, |id| format!(" (id {id})"));
@@ -63,7 +68,6 @@ impl Explained {
 fn file_of(error: &Error) -> Option<&Path> {
     match error {
         Error::Io { path, .. } => Some(path),
-        Error::Format(FormatError::Io { file, .. }) => Some(file),
         Error::Busy(folder) | Error::BusyElsewhere { folder, .. } => Some(folder),
         Error::ChangedScene { record, .. } => Some(record),
         _ => None,
@@ -78,6 +82,7 @@ fn kind(error: &Error) -> &'static str {
         Error::Platform(of) | Error::Observe(ObserveError::Platform(of)) | Error::Walk(WalkError::Platform(of)) => {
             if matches!(of, PlatformError::Lost { .. }) { "lost" } else { "platform" }
         }
+        Error::Format(FormatError::Io { .. }) => "file",
         Error::Format(_) => "format",
         Error::Style(_) | Error::Prompt(_) => "style",
         Error::Model(_)
@@ -108,7 +113,7 @@ mod tests {
         assert_eq!((usage.kind, &*usage.what, usage.hint.as_deref()), ("input", "there is no scene", Some("name one")));
         let missing = wayword_formats::read(Path::new("nowhere.json")).map_err(Error::from).unwrap_err();
         let missing = Explained::of(&missing);
-        assert_eq!((missing.kind, missing.place.as_deref()), ("format", Some("nowhere.json")));
+        assert_eq!((missing.kind, missing.place.as_deref()), ("file", Some("nowhere.json")));
         let file = tempfile::NamedTempFile::with_suffix(".json").unwrap();
         std::fs::write(
             file.path(),
