@@ -211,8 +211,9 @@ def main() -> int:
         parser.error(f"{binary}: there is no such file; `release/static` makes it")
     if INSIDE in os.environ:
         return trial(binary)
-    namespaces = ["unshare", "--user", "--map-root-user", "--net"]
-    return subprocess.run(namespaces + [sys.executable, *sys.argv], env=os.environ | {INSIDE: "1"}).returncode
+    # Root of a new user namespace may do what is needed here, on systems that let users have one.
+    user = ["--user", "--map-root-user"] if os.geteuid() else []
+    return subprocess.run(["unshare", "--net", *user, sys.executable, *sys.argv], env=os.environ | {INSIDE: "1"}).returncode
 
 
 if __name__ == "__main__":
