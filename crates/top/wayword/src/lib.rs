@@ -25,6 +25,7 @@ pub mod item;
 pub mod looking_for;
 mod losses;
 pub mod output;
+mod own_format;
 pub mod people;
 pub mod pictures;
 pub mod pipeline;

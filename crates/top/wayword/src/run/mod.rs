@@ -13,11 +13,15 @@ pub(crate) mod lines;
 mod record;
 mod world_data;
 
-use crate::{error::Error, item::Item, pictures, settings::Settings, text_file};
-use serde::{
-    Deserialize, Serialize,
-    de::{DeserializeOwned, IgnoredAny},
+use crate::{
+    error::Error,
+    item::Item,
+    own_format::{self, OwnFormat},
+    pictures,
+    settings::Settings,
+    text_file,
 };
+use serde::{Deserialize, Serialize, de::IgnoredAny};
 use sha2::{Digest, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -252,7 +256,7 @@ pub fn fresh_id(kind: &str) -> String {
 /// Writes the settings, or compares them with those that are there.
 pub(crate) fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), Error>
 where
-    S: Serialize + DeserializeOwned + PartialEq,
+    S: Serialize + OwnFormat + PartialEq,
 {
     let path = folder.join(file::CONFIG);
     if !path.exists() {
@@ -298,10 +302,10 @@ fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
     if before == *settings { Ok(()) } else { write_config(&path, settings) }
 }
 
-fn write_config<S: Serialize>(path: &Path, settings: &S) -> Result<(), Error> {
+fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), Error> {
     let text = toml::to_string_pretty(settings)
         .map_err(|error| Error::usage(format!("the settings cannot be written: {error}"), "report this as a bug"))?;
-    write_whole(path, &text)
+    write_whole(path, &own_format::headed::<S>(&text))
 }
 
 /// Whether a folder holds a run, finished or not.
@@ -344,15 +348,39 @@ pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
     config_of(folder)
 }
 
+/// What `config.toml` of a folder holds, whatever its format.
+pub(crate) fn table_of(folder: &Path) -> Result<toml::Table, Error> {
+    let path = folder.join(file::CONFIG);
+    let text = text_file::read(&path, "read the folder's settings")?;
+    toml::from_str(&text).map_err(|error| {
+        let problem = format!("{}: {}", path.display(), error.to_string().trim());
+        Error::usage(problem, "it was changed by hand or by another program: use another folder")
+    })
+}
+
+/// Refuses a folder of another format before one of its other files is read. A folder without settings passes.
+///
+/// # Errors
+/// When `config.toml` cannot be read or names another format.
+pub(crate) fn refuse_other_format<S: OwnFormat>(folder: &Path) -> Result<(), Error> {
+    let path = folder.join(file::CONFIG);
+    if !path.exists() {
+        return Ok(());
+    }
+    let text = text_file::read(&path, "read the folder's settings")?;
+    own_format::check::<S>(&text).map_err(|unread| {
+        let hint = unread.hint("it was changed by hand or by another program: use another folder");
+        Error::usage(format!("{}: {unread}", path.display()), hint)
+    })
+}
+
 /// What `config.toml` of a folder holds.
-pub(crate) fn config_of<S: DeserializeOwned>(folder: &Path) -> Result<S, Error> {
+pub(crate) fn config_of<S: OwnFormat>(folder: &Path) -> Result<S, Error> {
     let path = folder.join(file::CONFIG);
     let text = text_file::read(&path, "read the run's settings")?;
-    toml::from_str(&text).map_err(|error| {
-        Error::usage(
-            format!("{}: {}", path.display(), error.to_string().trim()),
-            "it was written by another command or another version: use another folder",
-        )
+    own_format::read(&text).map_err(|unread| {
+        let hint = unread.hint("it was written by another command or another version: use another folder");
+        Error::usage(format!("{}: {unread}", path.display()), hint)
     })
 }
 
