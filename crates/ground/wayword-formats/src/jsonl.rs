@@ -138,7 +138,9 @@ pub fn episodes(records: &[Record]) -> Vec<Episode> {
 fn take_record(item: &mut Item<'_>) -> Result<Record, FormatError> {
     let format = item.take("format")?;
     if item.text("format", &format)? != FORMAT {
-        let problem = format!("expected {FORMAT:?}, found {format}");
+        let by = item.look("provenance").and_then(|provenance| provenance.get("wayword")).and_then(Value::as_str);
+        let by = by.map_or_else(String::new, |by| format!(" by version {by:.20?} of Wayword"));
+        let problem = format!("expected {FORMAT:?}, found {format}{by}");
         return Err(item.wrong("format", problem, "read it with the version of Wayword that wrote it"));
     }
     let path = take_path(item)?;

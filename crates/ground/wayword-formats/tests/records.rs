@@ -114,6 +114,17 @@ fn what_cannot_be_in_one_dataset_is_refused() {
 }
 
 #[test]
+fn a_record_of_a_later_format_is_refused_with_the_version_that_wrote_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "house", &[1]);
+    let later =
+        std::fs::read_to_string(&file).unwrap().replace("wayword/1", "wayword/2").replace("\"0.1.0\"", "\"7.0.3\"");
+    std::fs::write(&file, later).unwrap();
+    let told = jsonl::read(&file).unwrap_err().to_string();
+    assert!(["\"wayword/2\"", "7.0.3", "expected \"wayword/1\""].iter().all(|part| told.contains(part)), "{told}");
+}
+
+#[test]
 fn records_come_to_one_episode_per_path() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1, 2]);

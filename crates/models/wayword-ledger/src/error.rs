@@ -60,7 +60,7 @@ pub enum LedgerError {
         source: Arc<std::io::Error>,
     },
     /// A line of a recording cannot be read.
-    #[error("{}: line {line}: {reason}\nhint: record the calls again with --record", path.display())]
+    #[error("{}: line {line}: {reason}\nhint: record the calls again with --record, or use the version that recorded them", path.display())]
     Recording {
         /// The file.
         path: PathBuf,

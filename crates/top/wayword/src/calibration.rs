@@ -1,6 +1,10 @@
 //! The file of `--calibration`.
 
-use crate::{error::Error, text_file};
+use crate::{
+    error::Error,
+    own_format::{self, Unread},
+    text_file,
+};
 use std::path::Path;
 use wayword_checks::open::Calibration;
 
@@ -11,8 +15,10 @@ use wayword_checks::open::Calibration;
 pub(crate) fn read(file: &Path, platform: &str) -> Result<Calibration, Error> {
     let text = text_file::read(file, "read the calibration")?;
     let hint = "make it with: wayword calibrate --platform matterport --data DIR --from R2R_train.json --out FILE";
-    let calibration = Calibration::read(&text)
-        .map_err(|error| Error::usage(format!("{} is no calibration: {}", file.display(), error.message()), hint))?;
+    let read =
+        own_format::read(&text).and_then(|read: Calibration| read.check().map(|()| read).map_err(Unread::Broken));
+    let calibration = read
+        .map_err(|unread| Error::usage(format!("{} is no calibration: {unread}", file.display()), unread.hint(hint)))?;
     if calibration.platform != platform {
         let made_for = &calibration.platform;
         let problem = format!("{} was made for platform {made_for}, and not for {platform}", file.display());

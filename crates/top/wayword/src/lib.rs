@@ -28,6 +28,7 @@ pub mod looking_for;
 mod losses;
 pub mod meant;
 pub mod output;
+mod own_format;
 pub mod people;
 pub mod pictures;
 pub mod pipeline;

@@ -1,6 +1,6 @@
 //! The detector of a run, what is known of it, and what it looks for by itself.
 
-use crate::{calls::Calls, error::Error, settings::Settings, styles::Measured, text_file};
+use crate::{calls::Calls, error::Error, own_format, settings::Settings, styles::Measured, text_file};
 use std::{
     path::Path,
     sync::{
@@ -126,8 +126,9 @@ fn figures(file: Option<&Path>, detector: &dyn Detector) -> Result<DetectorFigur
 fn measured(file: Option<&Path>, name: &str) -> Result<Option<DetectorFigures>, Error> {
     let Some(file) = file else { return Ok(None) };
     let hint = format!("make it with: wayword perceive --detector {name} --platform PLATFORM --figures FILE");
-    let figures = DetectorFigures::read(&text_file::read(file, "read the detector's figures")?).map_err(|error| {
-        Error::usage(format!("{} has no figures of a detector: {}", file.display(), error.message()), &*hint)
+    let text = text_file::read(file, "read the detector's figures")?;
+    let figures: DetectorFigures = own_format::read(&text).map_err(|unread| {
+        Error::usage(format!("{} has no figures of a detector: {unread}", file.display()), unread.hint(&hint))
     })?;
     if figures.detector != name {
         let problem = format!("{} was measured with {}, and not with {name}", file.display(), figures.detector);

@@ -131,5 +131,55 @@ fn sets_of_a_comparison_are_held_against_each_other() {
     assert!(found["agents"].as_array().unwrap().len() > 1 && table["rows"].is_array(), "{found}");
     assert_eq!(found["rankings"][0]["one"], "original");
     let none = building.wayword(&["robustness", "--compared", "run"]);
-    assert!(none.code == Some(1) && none.err.contains("followed.jsonl"), "{none:?}");
+    assert!(none.refused().contains("reads wayword-comparison/1"), "{none:?}");
+    fs::remove_file(building.path("walked/followed.jsonl")).unwrap();
+    let none = building.wayword(&["robustness", "--compared", "walked"]);
+    assert!(none.refused().contains("followed.jsonl"), "{none:?}");
+}
+
+/// Rewrites the head of a folder's settings as a version of the future would.
+fn make_later(building: &Building, folder: &str) {
+    let file = building.path(&format!("{folder}/config.toml"));
+    let text = fs::read_to_string(&file).unwrap();
+    let (format, rest) = text.split_once('\n').unwrap();
+    let (writer, rest) = rest.split_once('\n').unwrap();
+    assert!(format.ends_with("/1\"") && writer.starts_with("wayword = "), "{text}");
+    fs::write(&file, format!("{}\nwayword = \"7.0.3\"\nfresh = true\n{rest}", format.replace("/1\"", "/2\""))).unwrap();
+}
+
+/// A command that reads a folder of a later format says so, and changes nothing.
+fn assert_refused(building: &Building, (folder, format): (&str, &str), command: &[&str]) {
+    let settings = || fs::read(building.path(&format!("{folder}/config.toml"))).unwrap();
+    let before = settings();
+    let ran = building.wayword(command);
+    let told = ran.refused();
+    assert!(told.contains(&format!("\"{format}/2\"")) && told.contains("7.0.3"), "{command:?}: {told}");
+    assert!(told.contains("hint: use the version that wrote it"), "{told}");
+    assert_eq!(settings(), before);
+}
+
+#[test]
+fn a_folder_of_a_later_format_is_refused_by_every_command_that_reads_it() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let episodes = ["--platform", "matterport", "--data", "data", "--episodes", "data/reverie/REVERIE_val_seen.json"];
+    let compare =
+        [&["compare"], &episodes[..], &["--grounder", "labels/lexical", "--out", "walked", "--resamples", "100"]];
+    let (compare, generate) = (compare.concat(), [&["generate"], &episodes[..], &["--out", "run"]].concat());
+    let robust = ["robustness", "--run", "run", "--out", "robust", "--change", "mirror", "--limit", "1"];
+    for command in [&compare[..], &robust] {
+        assert_eq!(building.wayword(command).code, Some(0));
+    }
+
+    make_later(&building, "robust");
+    assert_refused(&building, ("robust", "wayword-robustness"), &robust);
+    make_later(&building, "walked");
+    for command in [&compare[..], &["report", "--run", "walked"], &["robustness", "--compared", "walked"]] {
+        assert_refused(&building, ("walked", "wayword-comparison"), command);
+    }
+    make_later(&building, "run");
+    let check = ["check", "run/instructions.jsonl", "--run", "run"];
+    for command in [&generate[..], &["report", "--run", "run"], &check, &robust] {
+        assert_refused(&building, ("run", "wayword-run"), command);
+    }
 }

@@ -53,7 +53,10 @@ impl Store {
         db.pragma_update(None, "secure_delete", true)?;
         let version: i64 = db.pragma_query_value(None, "user_version", |row| row.get(0))?;
         if version > VERSION {
-            let problem = format!("{}: it was made by a later version of this program", file.display());
+            let problem = format!(
+                "{}: a later version of this program made it (tables of version {version}, and this program reads {VERSION})",
+                file.display()
+            );
             return Err(StudyError::refused(problem, "use that version"));
         }
         db.execute_batch(SCHEMA)?;

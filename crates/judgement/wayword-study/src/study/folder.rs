@@ -58,7 +58,7 @@ impl Study {
         let settings = toml::to_string_pretty(&self.settings).map_err(|error| self.wrong(SETTINGS, &error))?;
         self.write(SETTINGS, settings.as_bytes())?;
         Store::open(&self.database())?;
-        let plan = serde_json::to_vec_pretty(&self.plan).map_err(|error| self.wrong(PLAN, &error))?;
+        let plan = self.plan.to_file().map_err(|error| self.wrong(PLAN, &error))?;
         self.write(PLAN, &plan)
     }
 
@@ -78,7 +78,7 @@ impl Study {
             let problem = format!("{}: there is no study (no {PLAN})", folder.display());
             return Err(StudyError::refused(problem, "`wayword study new` makes one"));
         }
-        let plan = serde_json::from_str(&read(PLAN)?).map_err(|error| wrong(folder, PLAN, &error))?;
+        let plan = Plan::from_file(&read(PLAN)?).map_err(|problem| wrong(folder, PLAN, &problem))?;
         let settings: Settings = toml::from_str(&read(SETTINGS)?).map_err(|error| wrong(folder, SETTINGS, &error))?;
         settings.check().map_err(|problem| wrong(folder, SETTINGS, &problem))?;
         let study = Self {
@@ -170,7 +170,7 @@ fn wrong(folder: &Path, name: &str, problem: &dyn std::fmt::Display) -> StudyErr
     let hint = if name == SETTINGS {
         "correct it; docs/STUDY.md lists its keys"
     } else {
-        "put back the file as `study new` wrote it"
+        "put back the file as `study new` wrote it, or use the version of this program that made the study"
     };
     StudyError::File { path: folder.join(name), problem: problem.to_string(), hint }
 }

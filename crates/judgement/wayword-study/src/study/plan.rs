@@ -1,6 +1,12 @@
 //! What is fixed when a study is made.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+/// The format of a study's folder. `plan.json` has it, and the version of the program that made the study.
+const FORMAT: &str = "wayword-study/1";
+/// Longest name of a format or a version that an error repeats, characters.
+const LONGEST: usize = 60;
 
 /// What people do with an item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,4 +75,75 @@ pub struct Plan {
     pub conditions: Vec<Condition>,
     /// The style of the texts, whose examples the people see; empty where it is not known.
     pub style: String,
+}
+
+impl Plan {
+    /// The plan as `plan.json` has it.
+    ///
+    /// # Errors
+    /// When it cannot be written as JSON.
+    pub(super) fn to_file(&self) -> serde_json::Result<Vec<u8>> {
+        let mut file = Map::new();
+        file.insert("format".to_owned(), FORMAT.into());
+        file.insert("wayword".to_owned(), env!("CARGO_PKG_VERSION").into());
+        if let Value::Object(plan) = serde_json::to_value(self)? {
+            file.extend(plan);
+        }
+        serde_json::to_vec_pretty(&file)
+    }
+
+    /// Reads `plan.json`. One without a format is of the first version, which wrote none.
+    ///
+    /// # Errors
+    /// When it has another format, or is no plan; the text says why.
+    pub(super) fn from_file(text: &str) -> Result<Self, String> {
+        let mut file: Map<String, Value> = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let by = file.shift_remove("wayword");
+        match file.shift_remove("format") {
+            Some(format) if format != FORMAT => {
+                let by =
+                    by.map_or_else(String::new, |by| format!(" and version {} of this program wrote it", short(&by)));
+                let this = env!("CARGO_PKG_VERSION");
+                Err(format!("its format is {}{by}, and this is version {this}, which reads {FORMAT}", short(&format)))
+            }
+            _ => serde_json::from_value(Value::Object(file)).map_err(|error| error.to_string()),
+        }
+    }
+}
+
+fn short(value: &Value) -> String {
+    value.to_string().chars().take(LONGEST).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan() -> Plan {
+        let conditions = Vec::new();
+        Plan { mode: Mode::Pair, seed: 3, per_item: 2, per_participant: 1, conditions, style: "r2r".to_owned() }
+    }
+
+    fn written() -> String {
+        String::from_utf8(plan().to_file().unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_plan_is_read_as_it_was_written_and_so_is_one_of_before_there_were_formats() {
+        assert!(written().starts_with("{\n  \"format\": \"wayword-study/1\",\n  \"wayword\": "), "{}", written());
+        assert_eq!(Plan::from_file(&written()), Ok(plan()));
+        assert_eq!(Plan::from_file(&serde_json::to_string(&plan()).unwrap()), Ok(plan()));
+    }
+
+    #[test]
+    fn a_later_plan_is_refused_with_the_version_that_wrote_it() {
+        let later = written().replace("study/1", "study/2").replace(env!("CARGO_PKG_VERSION"), "7.0.3");
+        let told = Plan::from_file(&later).unwrap_err();
+        assert!(["wayword-study/2", "7.0.3", "reads wayword-study/1"].iter().all(|part| told.contains(part)), "{told}");
+    }
+
+    #[test]
+    fn a_plan_with_an_unknown_key_is_refused() {
+        assert!(Plan::from_file(&written().replace("\"seed\"", "\"sead\"")).unwrap_err().contains("sead"));
+    }
 }

@@ -5,7 +5,8 @@ use crate::{
     episodes,
     error::Error,
     pictures, platforms,
-    run::{file, read_lines},
+    run::{file, read_lines, refuse_other_format},
+    settings::Settings,
 };
 use serde::Deserialize;
 use std::{
@@ -93,6 +94,7 @@ impl Frames {
             let problem = format!("{}: there is no run in it, so it has no pictures", run.display());
             return Err(Error::usage(problem, "give a folder that `wayword generate` made"));
         }
+        refuse_other_format::<Settings>(run)?;
         let walked: Vec<Walked> = read_lines(&walks)?;
         let pictured = walked.into_iter().filter(|walk| walk.has_pictures).map(|walk| walk.path);
         let items: BTreeMap<String, Way> = pictured.map(|path| (path.id.clone(), Way::Known(Box::new(path)))).collect();

@@ -4,6 +4,7 @@ use crate::{
     cli::Calibrate as Args,
     error::{Error, Exit},
     output::Output,
+    own_format,
     people::{Held, Labels, belongs, held, is_known, walks},
     platforms,
     settings::Asked,
@@ -49,5 +50,5 @@ struct Made {
 
 fn written(calibration: &Calibration) -> String {
     let head = "# Made by `wayword calibrate`. It comes from a dataset, whose terms apply: keep it to yourself.\n\n";
-    head.to_owned() + &toml::to_string(calibration).unwrap_or_default()
+    head.to_owned() + &own_format::headed::<Calibration>(&toml::to_string(calibration).unwrap_or_default())
 }

@@ -7,6 +7,7 @@
 //! on where the first stopped. At the end the lines are sorted, so the files are the same byte for byte however often
 //! the run was stopped.
 
+mod config;
 mod held;
 mod journal;
 pub(crate) mod lines;
@@ -14,10 +15,7 @@ mod record;
 mod world_data;
 
 use crate::{error::Error, item::Item, pictures, settings::Settings, text_file};
-use serde::{
-    Deserialize, Serialize,
-    de::{DeserializeOwned, IgnoredAny},
-};
+use serde::{Deserialize, de::IgnoredAny};
 use sha2::{Digest, Sha256};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -28,6 +26,9 @@ use std::{
 };
 use wayword_world::files;
 
+use config::keep_settings;
+pub(crate) use config::{config_of, keep_config, refuse_other_format, table_of};
+pub use config::{continued, is_begun, settings_of};
 pub(crate) use held::{Held, hold};
 pub use journal::{Journal, read_lines};
 pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, text_name};
@@ -249,79 +250,6 @@ pub fn fresh_id(kind: &str) -> String {
     format!("{kind}-{:x}-{:x}", since.as_micros(), std::process::id())
 }
 
-/// Writes the settings, or compares them with those that are there.
-pub(crate) fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), Error>
-where
-    S: Serialize + DeserializeOwned + PartialEq,
-{
-    let path = folder.join(file::CONFIG);
-    if !path.exists() {
-        return write_config(&path, settings);
-    }
-    let before: S = config_of(folder)?;
-    if before == *settings { Ok(()) } else { Err(other_settings(folder, &before, settings)) }
-}
-
-fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Error {
-    let differs = differing_keys(before, settings);
-    let differs: Vec<&str> = differs.iter().map(String::as_str).filter(|key| *key != "raised_from").collect();
-    let differs = differs.join(", ");
-    let problem = format!("{} holds a run with other settings: {differs}", folder.display());
-    let config = folder.join(file::CONFIG);
-    Error::usage(
-        problem,
-        format!(
-            "to continue it, give the old settings and input files again ({} has the settings); for a new run, another --out",
-            config.display()
-        ),
-    )
-}
-
-/// As [`keep_config`] for a run, which may be asked for more than before.
-fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
-    let path = folder.join(file::CONFIG);
-    if !path.exists() {
-        return keep_config(folder, settings);
-    }
-    let before: Settings = config_of(folder)?;
-    if settings.paths < before.paths {
-        let problem =
-            format!("{} holds a run of {} paths, but {} are asked for", folder.display(), before.paths, settings.paths);
-        return Err(Error::usage(
-            problem,
-            "ask for as many or more to continue it, or give another --out for a new run",
-        ));
-    }
-    if before.raised_to(settings) != *settings {
-        return Err(other_settings(folder, &before, settings));
-    }
-    if before == *settings { Ok(()) } else { write_config(&path, settings) }
-}
-
-fn write_config<S: Serialize>(path: &Path, settings: &S) -> Result<(), Error> {
-    let text = toml::to_string_pretty(settings)
-        .map_err(|error| Error::usage(format!("the settings cannot be written: {error}"), "report this as a bug"))?;
-    write_whole(path, &text)
-}
-
-/// Whether a folder holds a run, finished or not.
-#[must_use]
-pub fn is_begun(folder: &Path) -> bool {
-    folder.join(file::CONFIG).exists()
-}
-
-/// The settings with which a folder's run goes on: more paths and items may be asked for than before.
-///
-/// # Errors
-/// When the folder's settings cannot be read.
-pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> {
-    if !is_begun(folder) {
-        return Ok(settings.clone());
-    }
-    let raised_from = config_of::<Settings>(folder)?.raised_to(settings).raised_from;
-    Ok(Settings { raised_from, ..settings.clone() })
-}
-
 /// Writes a small file so that it is whole or absent, whenever the process is killed.
 pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
     let mut temporary = path.as_os_str().to_owned();
@@ -334,41 +262,6 @@ pub(crate) fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
     };
     write().map_err(Error::io(&temporary, "write"))?;
     fs::rename(&temporary, path).map_err(Error::io(path, "write"))
-}
-
-/// The settings of a run.
-///
-/// # Errors
-/// When the folder is not a run folder.
-pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
-    config_of(folder)
-}
-
-/// What `config.toml` of a folder holds.
-pub(crate) fn config_of<S: DeserializeOwned>(folder: &Path) -> Result<S, Error> {
-    let path = folder.join(file::CONFIG);
-    let text = text_file::read(&path, "read the run's settings")?;
-    toml::from_str(&text).map_err(|error| {
-        Error::usage(
-            format!("{}: {}", path.display(), error.to_string().trim()),
-            "it was written by another command or another version: use another folder",
-        )
-    })
-}
-
-fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
-    let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
-    let (a, b) = (table(a), table(b));
-    let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
-    let differs = |key: &&String| a.get(*key) != b.get(*key);
-    let contents = |name: &String| {
-        let (before, after) = (a.get("inputs")?.get(name)?, b.get("inputs")?.get(name)?);
-        (before != after).then(|| format!("contents of {name}"))
-    };
-    let inputs = a.get("inputs").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
-    let inputs: Vec<String> = inputs.filter_map(contents).collect();
-    let settings = keys.into_iter().filter(differs).filter(|key| *key != "inputs").cloned();
-    settings.chain(inputs).collect()
 }
 
 /// The beginning of the hash of a file that settings only name.

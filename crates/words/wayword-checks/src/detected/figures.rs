@@ -56,14 +56,6 @@ const ENOUGH: u32 = 30;
 const PRIOR: f64 = 0.5;
 
 impl DetectorFigures {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// When it is none.
-    pub fn read(text: &str) -> Result<Self, toml::de::Error> {
-        toml::from_str(text)
-    }
-
     /// What is taken for a detector that nobody measured: it finds three of five things and is wrong about one in fifty, and
     /// what it misses once it misses always. So nothing that it misses is absent.
     #[must_use]

@@ -55,7 +55,7 @@ fn a_single_name_has_its_own_rates_where_enough_was_seen() {
     assert!((figures.of("lamp").recall() - 0.5).abs() < 0.02);
     assert!(figures.of("sink").alarm() > 0.98);
     let text = toml::to_string(&figures).unwrap();
-    assert_eq!(DetectorFigures::read(&text).unwrap(), figures);
+    assert_eq!(toml::from_str::<DetectorFigures>(&text).unwrap(), figures);
 }
 
 proptest! {

@@ -280,7 +280,8 @@ mod tests {
         assert_eq!(answer(Labels { list_everything: true, ..Labels::default() }), "No, there is no dining table.");
         let calibrated = |close: &str| {
             let head = "platform = \"matterport\"\nfrom = \"a.json\"\ntexts = 1\n[names.\"dining table\"]\n";
-            let calibration = Calibration::read(&format!("{head}close = {close}\nfar = 0.0\nnowhere = 0.0")).unwrap();
+            let calibration: Calibration =
+                toml::from_str(&format!("{head}close = {close}\nfar = 0.0\nnowhere = 0.0")).unwrap();
             answer(Labels { calibration: Some(Arc::new(calibration)), ..Labels::default() })
         };
         assert_eq!(calibrated("2.0"), "No, there is no dining table.");

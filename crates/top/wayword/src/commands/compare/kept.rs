@@ -4,6 +4,7 @@ use super::agents::{READER_MAP, TOOLS};
 use crate::{
     cli::{Compare, SwapName},
     error::Error,
+    own_format::OwnFormat,
     platforms,
     run::{hash_of_file, short_hex},
     settings::{LABELS, Settings, nameable},
@@ -25,8 +26,6 @@ use wayword_navigation::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Kept {
-    /// Format of the walks. Those of another format are not continued.
-    pub(crate) format: u32,
     /// The platform's name.
     pub(crate) platform: String,
     /// Folder of its data.
@@ -93,8 +92,11 @@ pub(crate) struct ToolsKept {
     pub(crate) limits: Limits,
 }
 
-/// Format of the walks. It also changes when agents decide otherwise.
-const FORMAT: u32 = 1;
+/// Its version also changes when agents decide otherwise, because walks of both kinds are not put together.
+impl OwnFormat for Kept {
+    const NAME: &str = "wayword-comparison/1";
+    const NUMBER: Option<i64> = Some(1);
+}
 
 /// The grounder that is the detector of `--detector`.
 pub(super) const BY_NAME: &str = "detector";
@@ -134,7 +136,6 @@ impl Kept {
         let thresholds =
             super::agents::parameters(&args.agents, (&args.grounder, detector), args.parameters.as_deref())?;
         Ok(Self {
-            format: FORMAT,
             platform: settings.platform.clone(),
             data: settings.data.as_deref().map(absolute).transpose()?,
             at: settings.at.clone(),

@@ -22,8 +22,7 @@ use wayword_navigation::{comparison::Comparison, walk::Walk};
 
 /// Whether a folder holds a comparison, finished or not.
 pub(in crate::commands) fn is_comparison(folder: &Path) -> bool {
-    let kept: Result<toml::Table, Error> = run::config_of(folder);
-    kept.is_ok_and(|kept| kept.contains_key("agents"))
+    run::table_of(folder).is_ok_and(|kept| kept.contains_key("agents"))
 }
 
 /// Writes the page of a finished comparison from its folder. It needs the platform and the episodes, but not the sets of instructions.

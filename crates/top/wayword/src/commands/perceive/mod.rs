@@ -14,6 +14,7 @@ use crate::{
     looking_for::Lookout,
     losses::Losses,
     output::Output,
+    own_format,
     plan::Plan,
     platforms,
     run::fresh_id,
@@ -229,7 +230,7 @@ fn corrected(
 /// Writes what was measured of a detector.
 fn keep(file: &Path, figures: &DetectorFigures) -> Result<(), Error> {
     let text = toml::to_string(figures).map_err(|error| Error::usage(error.to_string(), "report this as a defect"))?;
-    std::fs::write(file, text).map_err(Error::io(file, "write"))
+    std::fs::write(file, own_format::headed::<DetectorFigures>(&text)).map_err(Error::io(file, "write"))
 }
 
 /// A view that the model did not caption is left out and counted. When no more calls are possible, the measurement

@@ -26,6 +26,7 @@ use crate::{
     interrupt,
     looking_for::Lookout,
     output::Output,
+    own_format::OwnFormat,
     plan::Models,
     platforms::{self, Remembering},
     report,
@@ -79,6 +80,10 @@ struct Kept {
     limit: Option<u32>,
     /// Seed of everything random.
     seed: u64,
+}
+
+impl OwnFormat for Kept {
+    const NAME: &str = "wayword-robustness/1";
 }
 
 pub(super) fn run(args: &Robustness, output: &Output) -> Result<Exit, Error> {

@@ -1,6 +1,10 @@
 //! `wayword robustness --compared`: how much success varies among sets of instructions.
 
-use crate::{commands::compare::file, error::Error, run::read_lines};
+use crate::{
+    commands::compare::{Kept, file},
+    error::Error,
+    run::{read_lines, refuse_other_format},
+};
 use serde::Serialize;
 use std::{collections::BTreeSet, fmt, path::PathBuf};
 use wayword_robustness::{
@@ -25,6 +29,7 @@ pub(super) struct Report {
 pub(super) fn of(folders: &[PathBuf], drawing: Drawing) -> Result<Report, Error> {
     let mut all: Vec<Followed> = Vec::new();
     for folder in folders {
+        refuse_other_format::<Kept>(folder)?;
         let found: Vec<Followed> = read_lines(&folder.join(file::FOLLOWED))?;
         if found.is_empty() {
             let problem = format!("{}: it has no {}", folder.display(), file::FOLLOWED);
