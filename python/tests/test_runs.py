@@ -153,6 +153,12 @@ def test_lines_of_other_versions_and_broken_lines_are_refused_with_their_place(h
     (copy / "instructions.jsonl").write_text(lines[0] + '{"format": "wayword/1"}\n')
     with pytest.raises(errors.FormatError, match="line 2"):
         wayword.load_run(copy)
+    config = (copy / "config.toml").read_text()
+    (copy / "config.toml").write_text(config.replace("wayword-run/1", "wayword-run/2"))
+    with pytest.raises(errors.FormatError, match="wayword-run/2") as told:
+        wayword.load_run(copy)
+    assert told.value.hint.endswith(wayword.__version__)
+    (copy / "config.toml").write_text(config)
     # A run that is being written ends in half a line.
     (copy / "instructions.jsonl").write_text(lines[0] + lines[1][:40])
     assert len(wayword.load_run(copy)) == 1

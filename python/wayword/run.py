@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from ._call import PathLike
 
-FORMAT = "wayword/1"
-"""The format of a run's instructions that this version reads."""
+FORMAT, FOLDER_FORMAT = "wayword/1", "wayword-run/1"
+"""The formats of a run's instructions and of its folder that this version reads."""
 
 
 @dataclass(frozen=True)
@@ -267,6 +267,7 @@ def load_run(folder: PathLike) -> Run:
     if not (root / "config.toml").is_file():
         hint = "give the folder that `wayword.generate` was given as `out`"
         raise errors.FileError("it is no run folder: it holds no config.toml", str(root), hint)
+    platform = _platform(root / "config.toml")
     captions = {walk["path"]["id"]: _captions(walk) for walk in _lines(root / "walks.jsonl")}
     made = [
         _read(root, "instructions.jsonl", at, line, captions)
@@ -276,17 +277,22 @@ def load_run(folder: PathLike) -> Run:
     failed = [
         Failed(line["item"], line.get("failure", "lost"), line["reason"]) for line in _lines(root / "errors.jsonl")
     ]
-    return Run(root, tuple(made), tuple(rejected), tuple(failed), _platform(root / "config.toml"))
+    return Run(root, tuple(made), tuple(rejected), tuple(failed), platform)
 
 
 def _platform(config: pathlib.Path) -> dict[str, str]:
-    found = {}
+    found: dict[str, str] = {}
     for line in config.read_text(encoding="utf-8").splitlines():
         name, _, value = line.partition(" = ")
         if line.startswith("["):
             break
-        if name in ("platform", "data", "at"):
+        if name in ("format", "wayword", "platform", "data", "at"):
             found[name] = str(json.loads(value))  # The program writes texts as JSON does.
+    form, by = found.pop("format", FOLDER_FORMAT), found.pop("wayword", None)
+    if form != FOLDER_FORMAT:
+        problem = f"its format is {form!r}, and this version reads {FOLDER_FORMAT!r}"
+        hint = f"read it with the version of Wayword that wrote it{f': {by}' if by else ''}"
+        raise errors.FormatError(problem, str(config), hint)
     return found
 
 
