@@ -62,7 +62,7 @@ fn a_tokenizer_is_fetched_without_its_model() {
     let name = ModelName::parse("hf/org/name").unwrap();
     let told = offline(cache.path()).folder(&name, &Needs::tokenizer(), &()).unwrap_err().to_string();
     assert!(told.contains("run `wayword models fetch --tokenizer hf/org/name`;"), "{told}");
-    let fake = FakeHub::start([("tokenizer.json", b"{}".to_vec()), ("model.safetensors", bytes(9))].into());
+    let fake = FakeHub::start(model());
     let found = fake.client(cache.path()).fetch(&name, &Needs::tokenizer(), &()).unwrap();
     assert!(found.path.join("tokenizer.json").is_file() && !found.path.join("model.safetensors").exists());
     let again = Hub::new(HubConfig { offline: true, ..fake.config(cache.path()) }).unwrap();
