@@ -31,6 +31,9 @@ pub struct Episode {
     /// The language of each instruction that was read, as its file tags it: "en-IN", "hi-IN" (RxR; VLN-CE where its
     /// episodes come from RxR). Empty where the file tags none.
     pub languages: Vec<String>,
+    /// The ids of each instruction's tokens, for agents whose loaders ask for them: written as `instr_encodings` (RxR:
+    /// `instr_encoding`). Empty where there are none; a file's own ids are kept as unknown fields are.
+    pub encodings: Vec<Vec<u32>>,
     /// Fields that the format does not name, in the order of the file. Written back where the loaders accept them (R2R,
     /// REVERIE, RxR).
     pub extra: Map<String, Value>,
@@ -66,6 +69,7 @@ impl Episode {
             split: None,
             instructions: Vec::new(),
             languages: Vec::new(),
+            encodings: Vec::new(),
             extra: Map::new(),
             as_read: Map::new(),
         }

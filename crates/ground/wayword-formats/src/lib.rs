@@ -1,4 +1,5 @@
-//! Readers and writers of the field's dataset formats: R2R, REVERIE, RxR, VLN-CE and Wayword's own JSONL.
+//! Readers and writers of the field's dataset formats: R2R, REVERIE, RxR, VLN-CE and Wayword's own JSONL; tables as
+//! Parquet.
 //!
 //! Files are untrusted. Sizes and counts are bounded, ids cannot name a folder, and an error names file, item and
 //! field. A file is written completely or not at all.
@@ -15,6 +16,7 @@ mod item;
 pub mod jsonl;
 mod limits;
 mod matterport;
+mod official;
 mod output;
 pub mod r2r;
 pub mod reverie;
@@ -22,6 +24,8 @@ pub mod rxr;
 mod splits;
 mod strict;
 pub mod submission;
+#[cfg(feature = "parquet")]
+pub mod table;
 mod tally;
 mod tokens;
 pub mod vlnce;
@@ -31,6 +35,7 @@ pub use episode::{Episode, InHabitat};
 pub use error::{FormatError, ItemPlace, WrongItem};
 pub use format::{Format, UnknownFormat, detect, read};
 pub(crate) use item::Item;
+pub use official::OfficialSplit;
 pub use output::write_sidecar;
 pub use splits::split;
 pub use vocabulary::Vocabulary;

@@ -35,6 +35,16 @@ pub(crate) fn path_field(file: &Path, episode: &Episode) -> Result<Value, Format
     Ok(episode.viewpoints.iter().map(wayword_core::ViewpointId::as_str).collect())
 }
 
+/// The field with the ids of each instruction's tokens.
+pub(crate) const ENCODINGS: &str = "instr_encodings";
+
+/// Adds the ids of the tokens, if there are any.
+pub(crate) fn add_encodings(fields: &mut Map<String, Value>, episode: &Episode) {
+    if !episode.encodings.is_empty() {
+        fields.insert(ENCODINGS.to_owned(), episode.encodings.clone().into());
+    }
+}
+
 /// Adds the unknown fields. Where a known field has the same name, that one stays.
 pub(crate) fn add_extra(fields: &mut Map<String, Value>, episode: &Episode) {
     for (key, value) in &episode.extra {

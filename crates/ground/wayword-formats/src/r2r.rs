@@ -66,6 +66,7 @@ fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<M
     fields.insert("path".to_owned(), matterport::path_field(file, episode)?);
     fields.insert("heading".to_owned(), episode.heading_field());
     fields.insert("instructions".to_owned(), episode.instructions.clone().into());
+    matterport::add_encodings(&mut fields, episode);
     matterport::add_extra(&mut fields, episode);
     Ok(fields)
 }
@@ -75,9 +76,9 @@ fn same_walk(a: &Map<String, Value>, b: &Map<String, Value>) -> bool {
 }
 
 fn append_instructions(to: &mut Map<String, Value>, from: &mut Map<String, Value>) {
-    if let (Some(Value::Array(to)), Some(Value::Array(from))) =
-        (to.get_mut("instructions"), from.get_mut("instructions"))
-    {
-        to.append(from);
+    for field in ["instructions", matterport::ENCODINGS] {
+        if let (Some(Value::Array(to)), Some(Value::Array(from))) = (to.get_mut(field), from.get_mut(field)) {
+            to.append(from);
+        }
     }
 }

@@ -65,6 +65,7 @@ fn fields(file: &Path, episode: &Episode, numbers: &mut PathNumbers) -> Result<M
     }
     fields.insert("heading".to_owned(), episode.heading_field());
     fields.insert("instructions".to_owned(), episode.instructions.clone().into());
+    matterport::add_encodings(&mut fields, episode);
     let id = composed_id(episode, fields.get("path_id"));
     fields.insert("id".to_owned(), id);
     matterport::add_extra(&mut fields, episode);

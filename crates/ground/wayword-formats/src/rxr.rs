@@ -11,6 +11,9 @@ use std::{collections::BTreeSet, path::Path};
 /// Known fields that are kept as long as the text is the one that was read.
 const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
 
+/// The field with the ids of the instruction's tokens, for agents whose loaders ask for them.
+const ENCODING: &str = "instr_encoding";
+
 /// Reads a file of guide annotations.
 ///
 /// # Errors
@@ -79,10 +82,14 @@ pub fn write(file: &Path, episodes: &[Episode]) -> Result<(), FormatError> {
     let mut lines = Vec::with_capacity(episodes.len());
     for episode in episodes {
         let alone = episode.instructions.len() == 1;
-        for text in &episode.instructions {
+        for (number, text) in episode.instructions.iter().enumerate() {
             let keeps_id = alone && keeps_its_id(episode) && used.insert(&episode.id);
             let id = if keeps_id { episode.name_field("instruction_id", &episode.id) } else { fresh.fresh().into() };
-            lines.push(fields(file, episode, text, id, &mut paths)?);
+            let mut line = fields(file, episode, text, id, &mut paths)?;
+            if let Some(ids) = episode.encodings.get(number) {
+                line.insert(ENCODING.to_owned(), ids.clone().into());
+            }
+            lines.push(line);
         }
     }
     output::write_file(file, |out| output::write_lines(out, &lines))

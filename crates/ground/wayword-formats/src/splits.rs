@@ -1,6 +1,9 @@
 //! The split of scenes into those for training and those for evaluation.
 
-use crate::jsonl::{Record, Split};
+use crate::{
+    OfficialSplit,
+    jsonl::{Record, Split},
+};
 use rand::RngCore;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::SceneId;
@@ -10,6 +13,9 @@ use wayword_core::SceneId;
 /// The share `val_share` (0 to 1, rounded) of each platform's scenes is for `val`. Each split has at least one scene
 /// where the platform has two and the share is neither 0 nor 1. The choice depends on the seed and the names of the
 /// scenes, not on the order of the records, and a scene that is added later moves few others.
+///
+/// Scenes that are officially held out for validation or test ([`OfficialSplit`]) come first, and are for `val` whatever the
+/// share, so that none of them is trained on.
 pub fn split(records: &mut [Record], val_share: f64, seed: u64) {
     let val = val_scenes(records, val_share, seed);
     for record in records {
@@ -19,18 +25,23 @@ pub fn split(records: &mut [Record], val_share: f64, seed: u64) {
 }
 
 fn val_scenes(records: &[Record], val_share: f64, seed: u64) -> BTreeMap<String, BTreeSet<SceneId>> {
-    let mut drawn: BTreeMap<String, BTreeSet<(u64, SceneId)>> = BTreeMap::new();
+    let mut drawn: BTreeMap<String, BTreeSet<(bool, u64, SceneId)>> = BTreeMap::new();
     for record in records {
         let (platform, scene) = (&record.platform, &record.path.scene);
         // A generator draws the number, because the derived seeds themselves are too similar where the names are.
         let lot = wayword_core::rng(seed, &["split", platform, scene.as_str()]).next_u64();
-        drawn.entry(platform.clone()).or_default().insert((lot, scene.clone()));
+        drawn.entry(platform.clone()).or_default().insert((!is_held_out(scene), lot, scene.clone()));
     }
-    let first = |(platform, scenes): (String, BTreeSet<(u64, SceneId)>)| {
-        let count = val_count(scenes.len(), val_share);
-        (platform, scenes.into_iter().take(count).map(|(_, scene)| scene).collect())
+    let first = |(platform, scenes): (String, BTreeSet<(bool, u64, SceneId)>)| {
+        let held_out = scenes.iter().filter(|(is_free, ..)| !is_free).count();
+        let count = val_count(scenes.len(), val_share).max(held_out);
+        (platform, scenes.into_iter().take(count).map(|(.., scene)| scene).collect())
     };
     drawn.into_iter().map(first).collect()
+}
+
+fn is_held_out(scene: &SceneId) -> bool {
+    OfficialSplit::of(scene).is_some_and(OfficialSplit::is_held_out)
 }
 
 fn val_count(scenes: usize, share: f64) -> usize {

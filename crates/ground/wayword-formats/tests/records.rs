@@ -165,3 +165,22 @@ fn items_on_one_path_of_a_dataset_keep_its_name() {
         assert!(refused.contains("line 1 (id 12_3): field \"path_id\": expected a whole number"), "{bad}: {refused}");
     }
 }
+
+/// Whatever the share and the seed, nothing is trained on what is officially held out.
+#[test]
+fn scenes_that_are_officially_held_out_are_for_val() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = records(folder.path(), "matterport", &[0, 1, 2, 3]);
+    let scenes = ["17DRP5sb8fy", "2azQ1b91cZZ", "2t7WUuJeko7", "5q7pvUzZiYa"];
+    for (share, seed) in [(0.0, 0), (0.25, 1), (0.5, 2), (0.75, 3), (1.0, 4)] {
+        let mut records = jsonl::read(&file).unwrap();
+        for (record, scene) in records.iter_mut().zip(scenes) {
+            record.path.scene = wayword_core::SceneId::new(scene).unwrap();
+        }
+        split(&mut records, share, seed);
+        let val: Vec<bool> = records.iter().map(|record| record.split == Some(Split::Val)).collect();
+        assert!(val[1] && val[2], "{share}: {val:?}");
+        let expected = (share * 4.0_f64).round().max(2.0) as usize;
+        assert_eq!(val.iter().filter(|is_val| **is_val).count(), expected, "{share}");
+    }
+}

@@ -2,6 +2,7 @@
 
 use crate::{LocalError, error::FETCH_AGAIN};
 use std::path::{Path, PathBuf};
+use wayword_core::contain::decoded;
 
 /// Longest file of a tokenizer, bytes.
 const LONGEST: u64 = 64 << 20;
@@ -21,7 +22,11 @@ impl Tokenizer {
     /// # Errors
     /// When it is missing or damaged.
     pub(crate) fn load(folder: &Path) -> Result<Self, LocalError> {
-        let file = folder.join("tokenizer.json");
+        Self::load_file(folder.join("tokenizer.json"))
+    }
+
+    /// The same for a file of any name.
+    pub(crate) fn load_file(file: PathBuf) -> Result<Self, LocalError> {
         let length = std::fs::metadata(&file).map_err(|_| LocalError::Missing {
             file: file.clone(),
             what: "the tokenizer",
@@ -31,7 +36,8 @@ impl Tokenizer {
         if length.len() > LONGEST {
             return Err(wrong(format!("it is too long for a tokenizer: {} bytes", length.len())));
         }
-        let mut inner = tokenizers::Tokenizer::from_file(&file).map_err(|error| wrong(error.to_string()))?;
+        let read = || tokenizers::Tokenizer::from_file(&file).map_err(|error| error.to_string());
+        let mut inner = decoded(read).map_err(wrong)?;
         inner.with_padding(None);
         inner.with_truncation(None).map_err(|error| wrong(error.to_string()))?;
         Ok(Self { file, inner })
@@ -68,13 +74,18 @@ impl Tokenizer {
         Ok(encoding.get_ids().to_vec())
     }
 
+    /// The id of a token; `None` where there is no such token.
+    pub(crate) fn id(&self, token: &str) -> Option<u32> {
+        self.inner.token_to_id(token)
+    }
+
     /// The text of ids, without the special ones.
     pub(crate) fn text(&self, ids: &[u32]) -> Result<String, LocalError> {
         let text = self.inner.decode(ids, true).map_err(|error| self.wrong(&error.to_string()))?;
         Ok(text.trim().to_owned())
     }
 
-    fn wrong(&self, problem: &str) -> LocalError {
+    pub(crate) fn wrong(&self, problem: &str) -> LocalError {
         LocalError::File { file: self.file.clone(), problem: problem.to_owned(), hint: FETCH_AGAIN }
     }
 }

@@ -40,6 +40,7 @@ pub mod settings;
 mod similar;
 pub mod styles;
 pub mod team;
+mod terms;
 mod text_file;
 mod texts;
 

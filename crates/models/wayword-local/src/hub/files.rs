@@ -11,11 +11,12 @@ use std::{
 
 const WHOLE: &str = "model.safetensors";
 const INDEX: &str = "model.safetensors.index.json";
+const TOKENIZER: &str = "tokenizer.json";
 const PICKLED: &str = "pytorch_model.bin";
 
 /// Files that a model of this program reads if they exist.
 const READ_WHERE_THERE: [&str; 8] = [
-    "tokenizer.json",
+    TOKENIZER,
     "tokenizer_config.json",
     "preprocessor_config.json",
     "processor_config.json",
@@ -95,6 +96,17 @@ impl Needs {
             return Self::default();
         }
         Self::default().weights().required(&["config.json"]).optional(&READ_WHERE_THERE)
+    }
+
+    /// The tokenizer alone: for who needs a model's words and not the model.
+    #[must_use]
+    pub fn tokenizer() -> Self {
+        Self::default().required(&[TOKENIZER])
+    }
+
+    /// The arguments of `wayword models fetch`, before the name, that fetch these files and not many more.
+    pub(super) fn flags(&self) -> &'static str {
+        if *self == Self::tokenizer() { "--tokenizer " } else { "" }
     }
 
     /// Gets all files. Small files come first, so that an error shows before gigabytes are fetched.

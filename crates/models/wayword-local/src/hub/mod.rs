@@ -159,7 +159,8 @@ impl Hub {
         let folder = repo.snapshot(known.map_or(model.revision.as_str(), Commit::as_str));
         let hint = |file: &str| {
             format!(
-                "unset WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE and run `wayword models fetch {name}`; without a network, download this file ({}) and the others of the model elsewhere, and put them there",
+                "unset WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE and run `wayword models fetch {}{name}`; without a network, download this file ({}) and the others of the model elsewhere, and put them there",
+                needs.flags(),
                 self.client.address(model, &model.revision, file)
             )
         };

@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod doctor;
 mod evaluate;
+mod export;
 mod ledger;
 mod models;
 mod perceive;
@@ -14,14 +15,14 @@ mod study;
 mod view;
 
 use crate::settings::{Asked, AskedPlatform};
-use clap::{Args, Parser, Subcommand, builder::PossibleValuesParser};
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
-use wayword_formats::Format;
 
 pub use check::{AskedWorld, Check, Detecting};
 pub use compare::{AskedPrior, Compare, PICTURES, SuccessRule, SwapName};
 pub use doctor::Doctor;
 pub use evaluate::Evaluate;
+pub use export::{AgentDataset, Export, ExportFormat};
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
@@ -88,7 +89,7 @@ pub enum Command {
     /// Learn from people's texts how far labels agree with single names of objects and rooms.
     Calibrate(Calibrate),
     /// Write a run as one file, in the format of R2R, REVERIE, RxR, VLN-CE or Wayword.
-    Export(Export),
+    Export(Box<Export>),
     /// Write a run as HTML pages: map, frames, dialogue, captions, instructions and checks.
     Report(Report),
     /// Measure captions against the labels of their views: objects named rightly, hallucinated objects, calls.
@@ -177,48 +178,6 @@ pub struct Calibrate {
     /// File to write.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-}
-
-/// `wayword export`.
-#[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
-  wayword export --run runs/a --run runs/b --format wayword --val-share 0.1 --out merged.jsonl
-  wayword export --run runs/val_seen --style r2r --highlight doubts
-  wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]
-pub struct Export {
-    /// Run folder. Several can be merged into one file of format wayword.
-    #[arg(long, value_name = "DIR")]
-    pub run: Vec<PathBuf>,
-    /// Export only the instructions of this style; required for all formats but wayword.
-    #[arg(long, value_name = "STYLE")]
-    pub style: Option<String>,
-    /// Instead of a dataset, write NAME.html and NAME.json: the texts with the words that a reader should doubt, and up to three
-    /// alternatives for each. docs/CHECKS.md says which words these are.
-    #[arg(long, value_name = "NAME")]
-    pub highlight: Option<PathBuf>,
-    /// With --highlight: the texts of this file instead of a run's: R2R, REVERIE, RxR or Wayword.
-    #[arg(long, value_name = "FILE")]
-    pub texts: Option<PathBuf>,
-    /// The platform of --texts. A run knows its own.
-    #[command(flatten)]
-    pub platform: AskedPlatform,
-    /// With --highlight: the world that the texts are held against. Other words are offered in an open world alone.
-    #[arg(long, value_name = "WORLD", value_enum, default_value_t)]
-    pub world: AskedWorld,
-    /// File format: r2r, reverie, rxr, vlnce or wayword.
-    #[arg(long, value_parser = PossibleValuesParser::new(Format::ALL.map(Format::name)), hide_possible_values = true)]
-    pub format: Option<String>,
-    /// File to write. Where a format's loaders refuse unknown fields, the provenance goes into a second file beside it.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Put this share of the scenes into a val split. No scene is in both splits.
-    #[arg(long, value_name = "SHARE")]
-    pub val_share: Option<f64>,
-    /// Seed of the choice of val scenes.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
 }
 
 /// `wayword report`.

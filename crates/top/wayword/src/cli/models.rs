@@ -8,6 +8,7 @@ use clap::{Args, Subcommand};
 Examples:
   wayword models list
   wayword models fetch hf/Salesforce/blip-vqa-base
+  wayword models fetch --tokenizer hf/google-bert/bert-base-uncased
   wayword models path hf/Salesforce/blip-vqa-base@main
 
 Models are kept in Hugging Face's cache, which its Python client shares: $HF_HUB_CACHE, else $HF_HOME/hub, else
@@ -30,10 +31,16 @@ pub enum ModelsCommand {
     Fetch {
         /// Its name: hf/ORG/NAME or hf/ORG/NAME@REVISION.
         name: String,
+        /// Fetch only its tokenizer.json, a small file, as `wayword export --tokenizer` needs it.
+        #[arg(long)]
+        tokenizer: bool,
     },
     /// Print a model's folder, or the file that it lacks. Nothing is fetched.
     Path {
         /// Its name.
         name: String,
+        /// Only its tokenizer.json has to be here.
+        #[arg(long)]
+        tokenizer: bool,
     },
 }

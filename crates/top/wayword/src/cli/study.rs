@@ -89,7 +89,8 @@ pub struct StudyNew {
     /// Where participants come from: links (personal ones), prolific or mturk.
     #[arg(long, value_name = "RECRUITER", default_value = "links")]
     pub recruiter: StudyRecruiter,
-    /// Say that you may show the pictures of this platform to participants. Photographs and simulators of others need it.
+    /// Say that you may show the pictures of this platform to participants. Every platform but house needs it: its scenes are
+    /// somebody's.
     #[arg(long)]
     pub i_have_the_right: bool,
     /// Seed of the choice of paths and of everything else that is random, but tokens.

@@ -23,18 +23,23 @@ pub(super) fn run(args: &Models, output: &Output) -> Result<Exit, Error> {
             let listed = Listed { models: hub.list()?, cache: hub.cache().to_owned() };
             output.data(&listed, &listed);
         }
-        ModelsCommand::Fetch { name } => {
+        ModelsCommand::Fetch { name, tokenizer } => {
             let name = ModelName::parse(name)?;
-            let folder = Hub::new(config)?.fetch(&name, &Needs::of_any(&name), &DownloadBar::new(output))?;
+            let folder = Hub::new(config)?.fetch(&name, &needs(&name, *tokenizer), &DownloadBar::new(output))?;
             told(&name, folder, output);
         }
-        ModelsCommand::Path { name } => {
+        ModelsCommand::Path { name, tokenizer } => {
             let name = ModelName::parse(name)?;
             config.offline = true;
-            told(&name, Hub::new(config)?.folder(&name, &Needs::of_any(&name), &())?, output);
+            told(&name, Hub::new(config)?.folder(&name, &needs(&name, *tokenizer), &())?, output);
         }
     }
     Ok(Exit::Done)
+}
+
+/// The files that are asked for.
+fn needs(name: &ModelName, tokenizer: bool) -> Needs {
+    if tokenizer { Needs::tokenizer() } else { Needs::of_any(name) }
 }
 
 /// Where a model's files are.

@@ -4,7 +4,7 @@ use super::{
     fake::{COMMIT, FakeHub, bytes, model},
     folder, problem,
 };
-use crate::hub::{Hub, HubConfig};
+use crate::hub::{Hub, HubConfig, ModelName, Needs};
 use std::{fs, path::Path};
 
 fn offline(cache: &Path) -> Hub {
@@ -54,6 +54,19 @@ fn the_path_where_a_file_belongs_is_told_and_works() {
         assert_eq!(found.path, belongs.parent().unwrap());
         assert!(found.identity.starts_with("sha256:"), "{}", found.identity);
     }
+}
+
+#[test]
+fn a_tokenizer_is_fetched_without_its_model() {
+    let cache = tempfile::tempdir().unwrap();
+    let name = ModelName::parse("hf/org/name").unwrap();
+    let told = offline(cache.path()).folder(&name, &Needs::tokenizer(), &()).unwrap_err().to_string();
+    assert!(told.contains("run `wayword models fetch --tokenizer hf/org/name`;"), "{told}");
+    let fake = FakeHub::start(model());
+    let found = fake.client(cache.path()).fetch(&name, &Needs::tokenizer(), &()).unwrap();
+    assert!(found.path.join("tokenizer.json").is_file() && !found.path.join("model.safetensors").exists());
+    let again = Hub::new(HubConfig { offline: true, ..fake.config(cache.path()) }).unwrap();
+    assert_eq!(again.folder(&name, &Needs::tokenizer(), &()).unwrap(), found);
 }
 
 #[test]

@@ -1,39 +1,38 @@
 //! `wayword export`.
 
+#[cfg(feature = "parquet")]
+mod card;
+mod duet;
 mod highlight;
 mod in_habitat;
+mod items;
+mod splits;
+#[cfg(not(feature = "parquet"))]
+#[path = "no_table.rs"]
+mod table;
+#[cfg(feature = "parquet")]
+mod table;
 
 use crate::{
-    cli::{AskedWorld, Export},
+    cli::{AskedWorld, Export, ExportFormat},
     count::count,
     error::{Error, Exit},
     output::Output,
     run::file,
     settings::AskedPlatform,
+    terms,
 };
-use in_habitat::World;
 use serde::Serialize;
-use serde_json::{Value, json};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
-use wayword_core::ObjectId;
-use wayword_formats::{
-    Episode, Format, jsonl,
-    jsonl::Record,
-    r2r, reverie, rxr, split,
-    vlnce::{self, Dataset},
-    write_sidecar,
-};
+use wayword_formats::{Format, jsonl, jsonl::Record, split};
 
-/// Height of the eye over the floor, metres: Matterport3D's camera, and the eye in houses. VLN-CE's positions are on
-/// the floor.
-const EYE_HEIGHT_M: f64 = 1.5;
 /// Most scenes for which the screen says what they need.
 const NEEDS_SHOWN: usize = 5;
 
-/// What was written.
+/// What was written into one file.
 #[derive(Debug, Serialize)]
 struct Written {
     instructions: usize,
@@ -45,15 +44,38 @@ struct Written {
     scene_needs: BTreeSet<String>,
 }
 
-pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
-    match &args.highlight {
-        Some(name) => highlight::write(args, name, output),
-        None => dataset(args, output),
-    }
+/// What was written into several files.
+#[derive(Debug, Serialize)]
+struct WrittenSplits {
+    instructions: usize,
+    /// Instructions by split.
+    splits: BTreeMap<String, usize>,
+    files: Vec<PathBuf>,
 }
 
-/// What an export to a dataset needs: the format, and the file.
-fn asked(args: &Export) -> Result<(Format, &Path), Error> {
+pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
+    if let Some(name) = &args.highlight {
+        return highlight::write(args, name, output);
+    }
+    let (format, out) = asked(args)?;
+    refuse_what_does_not_fit(args, format)?;
+    let mut records = records(&args.run, args.style.as_deref())?;
+    if let Some(share) = args.val_share {
+        split(&mut records, share, args.seed);
+    }
+    match format {
+        ExportFormat::Duet => duet::write(args, out, &records, output)?,
+        ExportFormat::Parquet => table::write(args, out, &records, output)?,
+        ExportFormat::Hf => table::publish(args, out, &records, output)?,
+        ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
+            one_file(args, format, out, &records, output)?;
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// What an export to a dataset needs: the format, and where to write it.
+fn asked(args: &Export) -> Result<(ExportFormat, &Path), Error> {
     if args.texts.is_some() || args.platform != AskedPlatform::default() || args.world != AskedWorld::default() {
         let problem = "--texts, --world and the flags of a platform are for --highlight";
         return Err(Error::usage(problem, "leave them out, or give --highlight NAME"));
@@ -64,51 +86,37 @@ fn asked(args: &Export) -> Result<(Format, &Path), Error> {
     if args.run.is_empty() {
         return Err(lacks("--run"));
     }
-    let format = args.format.as_ref().ok_or_else(|| lacks("--format"))?;
-    let format = format.parse().map_err(|error| Error::usage(format!("{error}"), "see wayword export --help"))?;
+    let format = args.format.ok_or_else(|| lacks("--format"))?;
     Ok((format, args.out.as_deref().ok_or_else(|| lacks("--out"))?))
 }
 
-fn dataset(args: &Export, output: &Output) -> Result<Exit, Error> {
-    let (format, out) = asked(args)?;
-    let mut records = records(&args.run, args.style.as_deref())?;
-    if out.exists() {
-        output.say(format_args!("overwriting the old file {}", out.display()));
+fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), Error> {
+    let refused = |problem: String, hint: &str| Err(Error::usage(problem, hint));
+    if !format.bears_all() && args.run.len() > 1 {
+        return refused(
+            format!("format {format} takes one run only"),
+            "merge runs with --format wayword, parquet or hf",
+        );
     }
-    let mut scene_needs = BTreeSet::new();
-    let provenance = if format == Format::Wayword {
-        if let Some(share) = args.val_share {
-            if !(0.0..=1.0).contains(&share) {
-                return Err(Error::usage(format!("--val-share {share} is not a share"), "give a number from 0 to 1"));
-            }
-            split(&mut records, share, args.seed);
-        }
-        jsonl::write(out, &records)?;
-        None
-    } else {
-        refuse_what_only_records_bear(args, format)?;
-        refuse_without_poses(format, &records)?;
-        let episodes = episodes(format, &args.run, &records, output);
-        scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
-        write_as(format, out, &records, episodes)?
-    };
-    if !scene_needs.is_empty() {
-        output.say(format_args!(
-            "do this so that Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"
-        ));
-        scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
-        if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
-            output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
-        }
+    let splits_itself = format.says_splits() || format == ExportFormat::Wayword;
+    if args.val_share.is_some() && !splits_itself {
+        let problem = format!("format {format} has no splits within a file");
+        return refused(problem, "use --val-share with --format wayword, rxr, duet, parquet or hf");
     }
-    let written = Written { instructions: records.len(), file: out.to_owned(), provenance, scene_needs };
-    let beside =
-        written.provenance.as_ref().map_or(String::new(), |file| format!("; provenance in {}", file.display()));
-    output.data(
-        &written,
-        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), out.display()),
-    );
-    Ok(Exit::Done)
+    if let Some(share) = args.val_share.filter(|share| !(0.0..=1.0).contains(share)) {
+        return refused(format!("--val-share {share} is not a share"), "give a number from 0 to 1");
+    }
+    if args.split.is_some() && (args.val_share.is_some() || format == ExportFormat::Wayword) {
+        let problem = "--split puts all texts into one split, and --val-share and --format wayword divide them";
+        return refused(problem.to_owned(), "give one of the two; for --format wayword, --val-share");
+    }
+    if !format.bears_all() && args.style.is_none() {
+        return refused(format!("a file of format {format} has texts of one style only"), "choose it with --style");
+    }
+    if format != ExportFormat::Duet && (args.tokenizer.is_some() || args.dataset.is_some()) {
+        return refused("--tokenizer and --dataset are for --format duet".to_owned(), "leave them out");
+    }
+    Ok(())
 }
 
 /// The records of runs, merged; only those of one style if it is named.
@@ -130,158 +138,77 @@ fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> 
     Ok(records)
 }
 
-fn refuse_what_only_records_bear(args: &Export, format: Format) -> Result<(), Error> {
-    if args.run.len() > 1 {
-        let problem = format!("format {format} takes one run only");
-        return Err(Error::usage(problem, "merge runs with --format wayword"));
-    }
-    if args.val_share.is_some() {
-        return Err(Error::usage(
-            format!("format {format} has no splits within a file"),
-            "use --val-share with --format wayword",
-        ));
-    }
-    if args.style.is_none() {
-        return Err(Error::usage(
-            format!("a file of format {format} has texts of one style only"),
-            "choose it with --style",
-        ));
-    }
+/// Writes a format that is one file.
+fn one_file(args: &Export, format: ExportFormat, out: &Path, records: &[Record], output: &Output) -> Result<(), Error> {
+    let Some(of_file) = format.of_one_file() else { return Ok(()) };
+    let splits = splits_of(args, format, records, output)?;
+    tell_overwriting(out, output);
+    let mut scene_needs = BTreeSet::new();
+    let provenance = if of_file == Format::Wayword {
+        jsonl::write(out, records)?;
+        None
+    } else {
+        items::refuse_without_poses(format, records)?;
+        let mut episodes = items::episodes(of_file, &args.run, records, output);
+        for (episode, split) in episodes.iter_mut().zip(splits) {
+            episode.split = Some(split);
+        }
+        scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
+        items::write(of_file, out, records, episodes)?
+    };
+    tell_needs(&scene_needs, output);
+    tell_terms(records, output);
+    let written = Written { instructions: records.len(), file: out.to_owned(), provenance, scene_needs };
+    let beside =
+        written.provenance.as_ref().map_or(String::new(), |file| format!("; provenance in {}", file.display()));
+    output.data(
+        &written,
+        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), out.display()),
+    );
     Ok(())
 }
 
-/// Whether items have a place for provenance: VLN-CE's loader fails on unknown fields, and an R2R item holds several
-/// instructions.
-fn bears_provenance(format: Format) -> bool {
-    matches!(format, Format::Reverie | Format::Rxr)
+/// The split of each record where the file says it or the user asked for one. Else nothing is refused, and the screen tells of
+/// scenes that are held out.
+fn splits_of(args: &Export, format: ExportFormat, records: &[Record], output: &Output) -> Result<Vec<String>, Error> {
+    if format.says_splits() || args.split.is_some() {
+        return splits::of_records(args, records);
+    }
+    if args.val_share.is_none() {
+        splits::tell_held_out(records, output);
+    }
+    Ok(Vec::new())
 }
 
-/// The records as items of one of the field's formats.
-fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &Output) -> Vec<Episode> {
-    let mut episodes: Vec<Episode> = records.iter().map(|record| episode(record, bears_provenance(format))).collect();
-    if let (Format::Vlnce, [run]) = (format, runs) {
-        let mut world = World::of(run, records);
-        for (record, episode) in records.iter().zip(&mut episodes) {
-            world.tell(record, episode);
-        }
-        if let Some(warning) = world.warning() {
-            output.say(warning);
-        }
-    }
-    if format == Format::Reverie { gathered(episodes) } else { episodes }
-}
-
-/// Writes one of the field's formats, and a file of provenance beside it if the format's items have no place for that.
-fn write_as(format: Format, file: &Path, records: &[Record], episodes: Vec<Episode>) -> Result<Option<PathBuf>, Error> {
-    match format {
-        Format::R2r => r2r::write(file, &episodes)?,
-        Format::Reverie => reverie::write(file, &episodes)?,
-        Format::Rxr => rxr::write(file, &episodes)?,
-        Format::Vlnce => vlnce::write(file, &Dataset::of(episodes))?,
-        Format::Wayword => jsonl::write(file, records)?,
-    }
-    if bears_provenance(format) {
-        return Ok(None);
-    }
-    let lines: Vec<Value> = records
-        .iter()
-        .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": about(record)}))
-        .collect();
-    Ok(Some(write_sidecar(file, &lines)?))
-}
-
-/// Refuses recordings without poses, because all of the field's formats say where the agent stands and looks.
-fn refuse_without_poses(format: Format, records: &[Record]) -> Result<(), Error> {
-    match records.iter().find(|record| !record.path.motion.is_known()) {
-        Some(record) => Err(Error::usage(
-            format!("format {format} needs poses, and path {} is from a recording without poses", record.path.id),
-            "use --format wayword",
-        )),
-        None => Ok(()),
+fn tell_overwriting(file: &Path, output: &Output) {
+    if file.exists() {
+        output.say(format_args!("overwriting the old file {}", file.display()));
     }
 }
 
-/// REVERIE names an item by its path and object. Items that share a path, a start and an object, or have none, become one
-/// item with several instructions; those without an object that start with another heading become another path.
-fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
-    let mut items: Vec<Episode> = Vec::new();
-    let mut starts: BTreeMap<(String, Option<ObjectId>, Option<u64>), usize> = BTreeMap::new();
-    let mut starts_of_path: BTreeMap<String, usize> = BTreeMap::new();
-    for mut episode in episodes {
-        let object = episode.target_object.clone();
-        let start = (episode.path_id.clone(), object, episode.start_heading.map(|heading| heading.rad().to_bits()));
-        if let Some(at) = starts.get(&start) {
-            join(&mut items[*at], episode);
-            continue;
-        }
-        if episode.target_object.is_some() {
-            starts.insert(start, items.len());
-            items.push(episode);
-            continue;
-        }
-        let others = starts_of_path.entry(episode.path_id.clone()).or_default();
-        if *others > 0 {
-            episode.path_id = format!("{}-{others}", episode.path_id);
-        }
-        *others += 1;
-        starts.insert(start, items.len());
-        items.push(episode);
-    }
-    items
+fn tell_terms(records: &[Record], output: &Output) {
+    terms::tell(records.iter().map(|record| record.platform.as_str()), output);
 }
 
-fn join(item: &mut Episode, other: Episode) {
-    item.instructions.extend(other.instructions);
-    for (key, value) in other.extra {
-        if let (Some(Value::Array(all)), Value::Array(more)) = (item.extra.get_mut(&key), value) {
-            all.extend(more);
-        }
+fn tell_needs(scene_needs: &BTreeSet<String>, output: &Output) {
+    if scene_needs.is_empty() {
+        return;
+    }
+    output.say(format_args!("do this so that Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
+    scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
+    if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
+        output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
     }
 }
 
-/// A record as an item of a dataset. Provenance is a list, one entry for each instruction.
-fn episode(record: &Record, with_provenance: bool) -> Episode {
-    let mut episode =
-        Episode::from_path(&record.path, vec![record.instruction.text.clone()]).on_floor_of(&record.path, EYE_HEIGHT_M);
-    episode.path_id = record.path_id();
-    if with_provenance {
-        episode.extra.insert("wayword".into(), json!([about(record)]));
+/// Tells what was written into several files.
+fn tell_written(out: &Path, files: Vec<PathBuf>, splits: &[String], output: &Output) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for split in splits {
+        *counts.entry(split.clone()).or_default() += 1;
     }
-    episode
-}
-
-fn about(record: &Record) -> Value {
-    json!({
-        "verdict": record.instruction.verdict,
-        "provenance": record.instruction.provenance,
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use wayword_core::{Heading, SceneId};
-
-    fn episode(path_id: &str, object: Option<&str>, heading: f64, text: &str) -> Episode {
-        let mut episode = Episode::new(text, path_id, SceneId::new("s").unwrap());
-        episode.target_object = object.map(|object| ObjectId::new(object).unwrap());
-        episode.start_heading = Some(Heading::new(heading).unwrap());
-        episode.instructions = vec![text.to_owned()];
-        episode.extra.insert("wayword".into(), json!([text]));
-        episode
-    }
-
-    #[test]
-    fn items_without_an_object_gather_by_path_and_start() {
-        let items = gathered(vec![
-            episode("7", None, 1.0, "a"),
-            episode("7", Some("3"), 1.0, "b"),
-            episode("7", None, 1.0, "c"),
-            episode("7", None, 2.0, "d"),
-            episode("7", Some("3"), 1.0, "e"),
-        ]);
-        let told: Vec<_> = items.iter().map(|item| (item.path_id.as_str(), item.instructions.join(" "))).collect();
-        assert_eq!(told, [("7", "a c".into()), ("7", "b e".into()), ("7-1", "d".into())]);
-        assert_eq!(items[0].extra["wayword"], json!(["a", "c"]));
-    }
+    let each: Vec<String> = counts.iter().map(|(split, count)| format!("{split} {count}")).collect();
+    let instructions = count(splits.len(), "instruction");
+    let written = WrittenSplits { instructions: splits.len(), splits: counts, files };
+    output.data(&written, format_args!("{instructions} written to {} ({})", out.display(), each.join(", ")));
 }

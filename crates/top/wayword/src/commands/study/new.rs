@@ -11,6 +11,7 @@ use crate::{
     error::Error,
     interrupt,
     output::Output,
+    terms,
 };
 use serde::Serialize;
 use std::{fmt, fs, path::PathBuf};
@@ -113,11 +114,8 @@ fn check_pictures(args: &StudyNew, mode: Mode, platform: &dyn Platform) -> Resul
         let problem = "--mode follow: a recording shows one way only, and has no viewpoint graph that one could walk";
         return Err(Error::usage(problem, "use --mode rate or --mode pair"));
     }
-    if !pictures::DRAWN.contains(&name) && !args.i_have_the_right {
-        let problem = format!("the pictures of platform {name} are somebody's, and participants would see them");
-        return Err(Error::usage(problem, "read their terms; if you may show them, give --i-have-the-right"));
-    }
-    Ok(())
+    let problem = format!("the pictures of platform {name} are somebody's, and participants would see them");
+    terms::check(name, args.i_have_the_right, problem, "show")
 }
 
 /// The routes, the practice's last.

@@ -22,7 +22,7 @@ use wayword_core::{Frame, Gaze, Heading, Platform, Pose, SceneId, ViewpointGraph
 use wayword_study::{Picture, Place, Scene};
 
 /// Platforms whose pictures this program draws itself, from any place, and from data that the user has.
-pub(super) const DRAWN: [&str; 2] = ["house", "habitat"];
+const DRAWN: [&str; 2] = ["house", "habitat"];
 /// Width of a panorama, pixels: a phone shows a third of it, a desk's screen half.
 const PANORAMA_PX: u32 = 2400;
 /// Most places between two frames of a film, on platforms that can draw there.

@@ -1,0 +1,58 @@
+//! Records as a table: a Parquet file with a row for each instruction, and flat, typed columns.
+//!
+//! `columns.rs` says what the columns hold and `schema.txt` of which type they are, in the same order; `shred.rs` makes Parquet's
+//! levels of rows.
+
+mod columns;
+mod shred;
+
+use crate::{FormatError, jsonl::Record, output};
+use parquet::{
+    basic::Compression,
+    errors::ParquetError,
+    file::{properties::WriterProperties, writer::SerializedFileWriter},
+    schema::parser::parse_message_type,
+};
+use std::{path::Path, sync::Arc};
+
+const SCHEMA: &str = include_str!("schema.txt");
+/// Rows of a group. Readers hold a group in memory.
+const GROUP_ROWS: usize = 10_000;
+
+/// A row: an instruction, and the split that it belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct Row<'r> {
+    /// The instruction with its path.
+    pub record: &'r Record,
+    /// The name of its split.
+    pub split: &'r str,
+}
+
+/// Writes a Parquet file, with Snappy. Equal rows give equal bytes.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(file: &Path, rows: &[Row<'_>]) -> Result<(), FormatError> {
+    let bytes = encoded(rows).map_err(|error| {
+        FormatError::document(file, format!("it cannot be written as Parquet: {error}"), "write it as wayword")
+    })?;
+    output::write_file(file, |out| out.write_all(&bytes))
+}
+
+fn encoded(rows: &[Row<'_>]) -> Result<Vec<u8>, ParquetError> {
+    let schema = Arc::new(parse_message_type(SCHEMA)?);
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_created_by(concat!("wayword version ", env!("CARGO_PKG_VERSION")).to_owned())
+        .build();
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties))?;
+    for rows in rows.chunks(GROUP_ROWS) {
+        let mut group = writer.next_row_group()?;
+        columns::write(&mut group, rows)?;
+        group.close()?;
+    }
+    writer.into_inner()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,97 @@
+//! Parquet's levels. A leaf of the schema is written as its values, with two numbers for each: how much of what is optional or
+//! repeated above it is there (`def`), and at which list a value goes on rather than begins (`rep`).
+
+use super::Row;
+
+/// The values of a leaf in some rows, and their levels.
+#[derive(Debug, PartialEq)]
+pub(super) struct Leaf<T> {
+    pub(super) values: Vec<T>,
+    /// `None` where every row has one value.
+    pub(super) def: Option<Vec<i16>>,
+    pub(super) rep: Option<Vec<i16>>,
+}
+
+/// A value in each row.
+pub(super) fn required<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> T) -> Leaf<T> {
+    Leaf { values: rows.iter().map(of).collect(), def: None, rep: None }
+}
+
+/// A value, or null.
+pub(super) fn optional<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Option<T>) -> Leaf<T> {
+    let cells: Vec<Option<T>> = rows.iter().map(of).collect();
+    let def = cells.iter().map(|cell| i16::from(cell.is_some())).collect();
+    Leaf { values: cells.into_iter().flatten().collect(), def: Some(def), rep: None }
+}
+
+/// A list in each row, which may be empty.
+pub(super) fn list<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Vec<T>) -> Leaf<T> {
+    let mut leaf = Leaf::nested();
+    for row in rows {
+        leaf.add_list(of(row), 0);
+    }
+    leaf
+}
+
+/// A list, or null.
+pub(super) fn optional_list<'r, T>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Option<Vec<T>>) -> Leaf<T> {
+    let mut leaf = Leaf::nested();
+    for row in rows {
+        match of(row) {
+            Some(list) => leaf.add_list(list, 1),
+            None => leaf.add_level(0, 0),
+        }
+    }
+    leaf
+}
+
+/// A list of points, or null.
+pub(super) fn optional_points<'r>(rows: &[Row<'r>], of: impl Fn(&Row<'r>) -> Option<Vec<[f64; 3]>>) -> Leaf<f64> {
+    let mut leaf = Leaf::nested();
+    for row in rows {
+        match of(row) {
+            Some(points) if !points.is_empty() => leaf.add_points(&points),
+            Some(_) => leaf.add_level(1, 0),
+            None => leaf.add_level(0, 0),
+        }
+    }
+    leaf
+}
+
+impl<T> Leaf<T> {
+    fn nested() -> Self {
+        Self { values: Vec::new(), def: Some(Vec::new()), rep: Some(Vec::new()) }
+    }
+
+    fn add_level(&mut self, def: i16, rep: i16) {
+        self.def.get_or_insert_default().push(def);
+        self.rep.get_or_insert_default().push(rep);
+    }
+
+    /// A list; `empty` is the level at which the list is there and has no element.
+    fn add_list(&mut self, list: Vec<T>, empty: i16) {
+        if list.is_empty() {
+            self.add_level(empty, 0);
+        }
+        for (index, value) in list.into_iter().enumerate() {
+            self.add_level(empty + 1, i16::from(index > 0));
+            self.values.push(value);
+        }
+    }
+}
+
+impl Leaf<f64> {
+    fn add_points(&mut self, points: &[[f64; 3]]) {
+        for (index, point) in points.iter().enumerate() {
+            for (axis, value) in point.iter().enumerate() {
+                let rep = match (index, axis) {
+                    (0, 0) => 0,
+                    (_, 0) => 1,
+                    _ => 2,
+                };
+                self.add_level(3, rep);
+                self.values.push(*value);
+            }
+        }
+    }
+}
