@@ -16,7 +16,7 @@ def test_the_notebook_runs_to_its_end(tmp_path):
     notebook = nbformat.read(EXAMPLES / "wayword.ipynb", as_version=4)
     # Nothing of a run is kept in the repository.
     assert all(not cell.get("outputs") for cell in notebook.cells)
-    environment = {"PYTHONPATH": os.environ.get("PYTHONPATH", ""), "WAYWORD_DATA": str(tmp_path / "none")}
+    environment = {"PYTHONPATH": os.environ.get("PYTHONPATH", "")}
     client = nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}})
     with pytest.MonkeyPatch.context() as patch:
         for name, value in environment.items():

@@ -12,6 +12,8 @@ import pytest
 
 import wayword
 
+# Seconds that tell these tests' processes from those of others.
+SLEEP = 100_000 + os.getpid()
 HERE = pathlib.Path(__file__).resolve().parent
 
 # A world that never answers, in a child that starts a child of its own.
@@ -23,20 +25,20 @@ from halls import Hall
 class Slow(Hall):
     def observe(self, scene, look):
         time.sleep(600)
-subprocess.Popen(["sleep", "612"])
+subprocess.Popen(["sleep", "{sleep}"])
 serve(Slow)
 """
 
 
 def slow_world(folder):
-    (folder / "world.py").write_text(HANGS.format(folders=[str(HERE), str(HERE.parent)]))
+    (folder / "world.py").write_text(HANGS.format(sleep=SLEEP, folders=[str(HERE), str(HERE.parent)]))
     world = folder / "world.json"
     world.write_text(json.dumps({"command": [sys.executable, "world.py"]}))
     return world
 
 
 def sleepers():
-    found = subprocess.run(["pgrep", "-f", "^sleep 612$"], capture_output=True, text=True)
+    found = subprocess.run(["pgrep", "-f", f"^sleep {SLEEP}$"], capture_output=True, text=True)
     return found.stdout.split()
 
 
@@ -130,3 +132,24 @@ def test_a_call_whose_child_hangs_is_ended_by_the_second_ctrl_c(tmp_path):
     )
     assert done.stdout.splitlines() == ["raised True"], done.stdout + done.stderr
     assert wait_for(lambda: sleepers() == [])
+
+
+def test_the_interpreter_ends_while_another_thread_is_inside_a_call(tmp_path):
+    script = tmp_path / "ends.py"
+    folders = [str(HERE)]
+    script.write_text(
+        f"import sys; sys.path[:0] = {folders!r}\n"
+        "import threading, time, wayword\n"
+        "from halls import Hall\n"
+        "class Slow(Hall):\n"
+        "    def observe(self, scene, look):\n"
+        "        time.sleep(0.2)\n"
+        "        return super().observe(scene, look)\n"
+        "paths = dict(paths=50, hops=(2, 6), metres=(3, 14))\n"
+        "make = lambda: wayword.generate(sys.argv[1], platform=Slow(), progress=False, **paths)\n"
+        "threading.Thread(target=make, daemon=True).start()\n"
+        "time.sleep(1.5)\n"
+        "print('ends')\n"
+    )
+    done = subprocess.run([sys.executable, script, tmp_path / "run"], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout) == (0, "ends\n"), done.stderr

@@ -41,7 +41,7 @@ def test_progress_is_told_and_ends_with_all_items(tmp_path):
     told = []
     paths = dict(paths=2, hops=(2, 6), metres=(3, 14), progress=lambda done, total, text: told.append((done, total)))
     wayword.generate(tmp_path / "run", platform=Hall(), **paths)
-    assert told[-1] == (2, 2) and [done for done, _ in told] == sorted({done for done, _ in told})
+    assert told[-1] == (2, 2) and [done for done, _ in told] == sorted(done for done, _ in told)
 
 
 def test_pandas_and_datasets_have_a_row_for_each_text(houses):
@@ -73,7 +73,9 @@ def test_cards_show_frames_and_escape_every_text(houses):
         folder=houses.folder,
     )
     card = hostile._repr_html_()
-    assert not re.search(r"<(script|b>|img src=x)", card.replace("<b style", "")) or "<b>0</b>" in card
+    assert (
+        not re.search(r"<(img|/figcaption><)", card.replace("</figcaption></figure>", "")) and "path ../../etc" in card
+    )
     assert "<script" not in card and "onerror=alert(1)>" not in card and "base64" not in card
     assert str(len(houses.instructions)) in houses._repr_html_()
 
@@ -157,7 +159,7 @@ def test_lines_of_other_versions_and_broken_lines_are_refused_with_their_place(h
     (copy / "config.toml").write_text(config.replace("wayword-run/1", "wayword-run/2"))
     with pytest.raises(errors.FormatError, match="wayword-run/2") as told:
         wayword.load_run(copy)
-    assert told.value.hint.endswith(wayword.__version__)
+    assert "version that wrote it" in told.value.hint
     (copy / "config.toml").write_text(config)
     # A run that is being written ends in half a line.
     (copy / "instructions.jsonl").write_text(lines[0] + lines[1][:40])

@@ -76,3 +76,39 @@ def test_calls_of_several_threads_wait_for_each_other(tmp_path):
     for thread in threads:
         thread.join()
     assert sorted(made) == [1, 2, 3] and all(len(run) == 1 for run in made.values())
+
+
+class Nested(Hall):
+    def observe(self, scene, look):
+        wayword.command("platforms")
+        return super().observe(scene, look)
+
+
+def test_a_call_inside_a_call_is_refused_and_does_not_wait_for_itself(tmp_path):
+    paths = dict(paths=1, hops=(2, 6), metres=(3, 14))
+    run = wayword.generate(tmp_path / "world", platform=Nested(), **paths)
+    assert "cannot be called from" in run.errors[0].reason
+    with pytest.raises(errors.InputError, match="cannot be called from"):
+        nested = lambda *told: wayword.command("platforms")  # noqa: E731
+        wayword.generate(tmp_path / "progress", platform=Hall(), progress=nested, **paths)
+    assert wayword.command("platforms")
+
+
+def test_what_progress_raises_comes_through_and_children_start_again(tmp_path):
+    def fails(done, total, text):
+        raise LookupError("mine")
+
+    with pytest.raises(LookupError, match="mine"):
+        wayword.generate(tmp_path / "run", platform=Hall(), paths=1, hops=(2, 6), metres=(3, 14), progress=fails)
+    assert wayword.Follower(platform=Hall()).scenes == ["hall"]
+
+
+def test_a_settings_file_counts_where_no_argument_is_given(tmp_path):
+    config = tmp_path / "run.toml"
+    config.write_text('style = ["reverie"]\npaths = 1\nmetres = "3..14"\nhops = "2..6"\n')
+    run = wayword.generate(tmp_path / "run", platform=Hall(), config=config)
+    assert {text.style for text in run} == {"reverie"}
+    both = wayword.generate(
+        tmp_path / "both", platform=Hall(), paths=1, hops=(2, 6), metres=(3, 14), style=("r2r", "reverie")
+    )
+    assert {text.style for text in both} == {"r2r", "reverie"}

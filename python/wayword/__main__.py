@@ -7,10 +7,11 @@ import sys
 def main() -> int:
     """Runs the program with the arguments of this process. Returns its exit code."""
     from wayword import _wayword
+    from wayword._guard import GUARDIAN
 
     # Wayword handles Ctrl-C itself. Python's own handler would raise KeyboardInterrupt after the end.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return _wayword.main(["wayword", *sys.argv[1:]], (sys.executable, ["-m", "wayword"]))
+    return _wayword.main(["wayword", *sys.argv[1:]], GUARDIAN)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import itertools
 import json
 import logging
 import os
@@ -12,6 +14,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, Union
 
 from . import errors
+from ._guard import GUARDIAN
 from .platform import Platform, answer
 
 Progress = bool | None | Callable[[int, int, str], None]
@@ -21,10 +24,12 @@ for none."""
 PathLike = Union[str, "os.PathLike[str]"]
 
 _log = logging.getLogger("wayword")
-GUARDIAN: tuple[str, list[str]] = (sys.executable or "python3", ["-m", "wayword"])
 
 # The program's exit codes: docs/CLI.md lists them.
-_WITH_LOSS, _ENDS = 3, {1: errors.InputError, 5: errors.StoppedError, 7: errors.LostError}
+_ENDS = {1: errors.InputError, 5: errors.StoppedError, 7: errors.LostError}
+
+# The threads that are inside a call, and those that ask a world for one.
+_inside_call = threading.local()
 
 
 class _Hears:
@@ -55,7 +60,7 @@ def command(*arguments: object, progress: Progress = None) -> Any:
     from . import _wayword
     from .notebook import shown
 
-    with shown(progress) as show:
+    with _alone(), shown(progress) as show:
         typed = [os.fspath(one) if isinstance(one, os.PathLike) else str(one) for one in arguments]
         code, told = _wayword.call(typed, GUARDIAN, _Hears(show))
     result = json.loads(told) if told else None
@@ -64,6 +69,26 @@ def command(*arguments: object, progress: Progress = None) -> Any:
         what, _, hint = str(reason).partition("\nhint: ")
         raise _ENDS[code](what, hint=hint or "give the same call again to go on")
     return result
+
+
+@contextlib.contextmanager
+def _alone() -> Iterator[None]:
+    """Refuses a call inside a call, which would wait for itself: from `progress`, a log handler or a world."""
+    if getattr(_inside_call, "is_so", False):
+        what = "a command cannot be called from `progress`, from a log handler or from a world"
+        raise errors.InputError(what, hint="call it when the other one has returned")
+    _inside_call.is_so = True
+    try:
+        yield
+    finally:
+        _inside_call.is_so = False
+
+
+@atexit.register
+def _finish() -> None:
+    module = sys.modules.get("wayword._wayword")
+    if module is not None:
+        module.finish()
 
 
 def flags(**values: object) -> list[str]:
@@ -75,8 +100,6 @@ def flags(**values: object) -> list[str]:
             continue
         if value is True:
             given.append(flag)
-        elif isinstance(value, tuple) and len(value) == 2:
-            given.append(f"{flag}={value[0]}..{value[1]}")
         else:
             each: list[object] = list(value) if isinstance(value, (list, set, tuple)) else [value]
             # With a sign of equality, so that no value is taken for a flag.
@@ -91,32 +114,43 @@ def file_name(path: PathLike) -> str:
 
 
 def opened(
-    platform: str | Platform, data: PathLike | None, at: str | None, island: int | None
+    platform: str | Platform | None,
+    data: PathLike | None,
+    at: str | None,
+    island: int | None,
+    *,
+    is_kept: bool = False,
 ) -> contextlib.AbstractContextManager[dict[str, Any]]:
-    """The flags that name a platform. A world of this process is known while the context lasts."""
-    if isinstance(platform, str):
+    """The flags that name a platform. A world of this process is known while the context lasts; where a run keeps its name
+    (`is_kept`), it is known by its class, and worlds of one class take turns."""
+    if platform is None or isinstance(platform, str):
         named = {"platform": platform, "data": None if data is None else os.fspath(data), "at": at, "island": island}
         return contextlib.nullcontext(named)
     if data is not None or at is not None or island is not None:
         raise errors.InputError("a world of this process takes no data, at or island", hint="leave them out")
-    return _inside(platform)
+    if not isinstance(platform, Platform):
+        hint = "give a name from `wayword platforms`, or an object of a subclass of wayword.Platform"
+        raise errors.InputError(f"platform {platform!r} is no world", hint=hint)
+    return _inside(platform, is_kept)
 
 
-# A world is known by the name of its class, so that a run can be continued: two of one name take turns.
-_WORLDS = threading.RLock()
+_WORLDS: dict[str, threading.Lock] = {}
+_numbers = itertools.count(1)
 
 
 @contextlib.contextmanager
-def _inside(world: Platform) -> Iterator[dict[str, Any]]:
+def _inside(world: Platform, is_kept: bool) -> Iterator[dict[str, Any]]:
     from . import _wayword
 
-    if not isinstance(world, Platform):
-        hint = "give a name from `wayword platforms`, or an object of a subclass of wayword.Platform"
-        raise errors.InputError(f"platform {world!r} is no world", hint=hint)
+    def asked(line: bytes) -> bytes:
+        with _alone():
+            return answer(world, json.loads(line)).encode()
+
     name = type(world).__name__
-    sizes = (world.width_px, world.height_px, world.spacing_m)
-    with _WORLDS:
-        data = _wayword.put_world(name, lambda line: answer(world, json.loads(line)).encode(), *sizes)
+    turn = _WORLDS.setdefault(name, threading.Lock()) if is_kept else contextlib.nullcontext()
+    with turn:
+        known = name if is_kept else f"{name}-{next(_numbers)}"
+        data = _wayword.put_world(known, asked, world.width_px, world.height_px, world.spacing_m)
         try:
             yield {"platform": "process", "data": os.fspath(data), "at": None, "island": None}
         finally:

@@ -14,7 +14,7 @@ from typing import Any
 from . import errors
 from ._call import PathLike, Progress, command, file_name, flags, opened
 from .platform import Platform
-from .run import Finding, Run, _span
+from .run import Finding, Run
 
 Texts = Run | PathLike | Sequence[Mapping[str, Any]]
 """Texts with their paths: a run, a dataset file, or items of R2R's or REVERIE's format."""
@@ -70,15 +70,17 @@ def check(
         **settings: any other flag of `wayword check`, with underscores: `world="open"`, `doubts=True`.
     """
     if isinstance(texts, Run) and platform is None and run is None:
-        if texts.platform.get("data", "").startswith("python:"):
-            run = texts.folder
-        else:
-            platform, data, at = texts.platform["platform"], texts.platform.get("data"), texts.platform.get("at")
+        own = texts.platform
+        platform = own["platform"]
+        if data is None and str(own.get("data", "")).startswith("python:"):
+            platform, run = None, texts.folder
+        elif data is None and at is None and island is None:
+            data, at, island = own.get("data"), own.get("at"), own.get("island")
     with contextlib.ExitStack() as stack:
         file = stack.enter_context(_as_file(texts))
         where: Mapping[str, Any] = {"run": run}
         if run is None:
-            where = stack.enter_context(opened(platform or "house", data, at, island))
+            where = stack.enter_context(opened(platform, data, at, island, is_kept=True))
         report = command("check", file, *flags(**where, style=style, **settings), progress=progress)
     not_passed = tuple(
         CheckedText(

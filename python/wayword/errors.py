@@ -77,11 +77,14 @@ class SubmissionError(WaywordError):
     missing: int
     """How many of all problems are instructions without a trajectory."""
 
-    def __init__(self, problems: Sequence[tuple[str | None, str]], count: int, missing: int = 0) -> None:
+    def __init__(
+        self, problems: Sequence[tuple[str | None, str]], count: int, missing: int = 0, hint: str | None = None
+    ) -> None:
         self.problems, self.missing = problems, missing
         first = "; ".join(f"{name}: {problem}" if name else problem for name, problem in problems[:3])
         more = f"; and {count - 3} more (see `problems`)" if count > 3 else ""
-        hint = f"add the {missing} trajectories that are missing, or give partial=True" if missing else None
+        if missing:
+            hint = f"add the {missing} trajectories that are missing, or give partial=True"
         super().__init__(f"nothing was scored: {first}{more}", hint=hint)
 
 
@@ -99,6 +102,7 @@ _KINDS = {
     "format": FormatError,
     "platform": PlatformError,
     "lost": LostError,
+    "stopped": StoppedError,
     "style": StyleError,
     "model": ModelError,
     "ledger": LedgerError,
@@ -114,5 +118,5 @@ def of_kind(kind: str, what: str, where: str | None, hint: str | None) -> BaseEx
     if kind == "interrupted":
         return KeyboardInterrupt(what)
     if kind == "submission":
-        return SubmissionError([(where, what)], 1)
+        return SubmissionError([(where, what)], 1, hint=hint)
     return _KINDS.get(kind, WaywordError)(what, where, hint)

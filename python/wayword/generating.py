@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ._call import PathLike, Progress, command, flags, opened
+from .errors import InputError
 from .platform import Platform
 from .run import Run, load_run
 
@@ -14,7 +15,7 @@ from .run import Run, load_run
 def generate(
     out: PathLike,
     *,
-    platform: str | Platform = "house",
+    platform: str | Platform | None = None,
     data: PathLike | None = None,
     at: str | None = None,
     island: int | None = None,
@@ -23,7 +24,7 @@ def generate(
     scan: str | Sequence[str] | None = None,
     hops: tuple[int, int] | None = None,
     metres: tuple[float, float] | None = None,
-    style: str | Sequence[str] = "r2r",
+    style: str | Sequence[str] | None = None,
     seed: int | None = None,
     llm: str | None = None,
     see: str | None = None,
@@ -39,7 +40,7 @@ def generate(
     Args:
         out: the run folder.
         platform: a name that `wayword platforms` lists, or your own world: an object of a subclass of
-            `wayword.Platform`.
+            `wayword.Platform`. Without it, generated houses.
         data: folder or file of the platform's data.
         at: address of a running simulator.
         episodes: take the paths of this dataset file.
@@ -47,7 +48,7 @@ def generate(
         scan: only these scenes.
         hops: least and most hops of a random path.
         metres: least and most length of a random path.
-        style: r2r, reverie, a TOML file, or NAME=DATASET; several are written for each path.
+        style: r2r, reverie, a TOML file, or NAME=DATASET; several are written for each path. Without it, r2r and reverie.
         llm: the model that asks, summarises and writes, as PROVIDER/MODEL; without it rules do.
         see: what looks: labels, or a model.
         config: settings as TOML.
@@ -58,14 +59,17 @@ def generate(
         StoppedError: when the budget is spent; the same call goes on.
         WaywordError: one of its kinds, see `wayword.errors`.
     """
-    with opened(platform, data, at, island) as where:
+    if settings.pop("dry_run", None):
+        hint = 'wayword.command("generate", "--dry-run", ...) gives the estimate'
+        raise InputError("a dry run makes no run folder", hint=hint)
+    with opened(platform, data, at, island, is_kept=True) as where:
         given = flags(
             **where,
             episodes=episodes,
             paths=paths,
             scan=scan,
-            hops=hops,
-            metres=metres,
+            hops=_range(hops),
+            metres=_range(metres),
             style=style,
             seed=seed,
             llm=llm,
@@ -75,6 +79,10 @@ def generate(
         )
         summary: Mapping[str, Any] = command("generate", *flags(out=out), *given, progress=progress)
     return dataclasses.replace(load_run(out), summary=summary)
+
+
+def _range(values: tuple[float, float] | None) -> str | None:
+    return None if values is None else f"{values[0]}..{values[1]}"
 
 
 def export(

@@ -171,7 +171,7 @@ class OpenPlatform(Platform):
         """Whether all places between two are free, 10 cm apart."""
         steps = max(1, math.ceil(math.dist(a, b) / 0.1))
         for n in range(steps + 1):
-            x, y, z = (p + (q - p) * n / steps for p, q in zip(a, b, strict=False))
+            x, y, z = (p + (q - p) * n / steps for p, q in zip(a, b))
             if not self.is_free(scene, (x, y, z)):
                 return False
         return True

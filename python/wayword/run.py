@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import pathlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from ._call import PathLike
 
-FORMAT, FOLDER_FORMAT = "wayword/1", "wayword-run/1"
-"""The formats of a run's instructions and of its folder that this version reads."""
+FORMAT = "wayword/1"
+"""The format of a run's instructions that this version reads."""
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ class Failed:
     reason: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Run:
     """A run folder. In a notebook its first instructions are shown as cards."""
 
@@ -163,10 +163,14 @@ class Run:
     instructions: tuple[Instruction, ...]
     rejected: tuple[Rejected, ...]
     errors: tuple[Failed, ...]
-    platform: Mapping[str, str] = field(default_factory=dict, repr=False)
-    """What the run was made on: `platform`, and where it has them `data` and `at`."""
+    platform: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    """What the run was made on: `platform`, and where it has them `data`, `at` and `island`."""
     summary: Mapping[str, Any] | None = field(default=None, repr=False)
     """What `generate` said at its end; `None` for a run that was loaded."""
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.instructions)} instructions, {len(self.rejected)} rejected, {len(self.errors)} failed"
+        return f"Run({str(self.folder)!r}: {counts})"
 
     def __len__(self) -> int:
         return len(self.instructions)
@@ -267,78 +271,84 @@ def load_run(folder: PathLike) -> Run:
     if not (root / "config.toml").is_file():
         hint = "give the folder that `wayword.generate` was given as `out`"
         raise errors.FileError("it is no run folder: it holds no config.toml", str(root), hint)
-    platform = _platform(root / "config.toml")
-    captions = {walk["path"]["id"]: _captions(walk) for walk in _lines(root / "walks.jsonl")}
-    made = [
-        _read(root, "instructions.jsonl", at, line, captions)
-        for at, line in enumerate(_lines(root / "instructions.jsonl"))
-    ]
-    rejected = [_rejected(line) for line in _lines(root / "rejected.jsonl")]
-    failed = [
-        Failed(line["item"], line.get("failure", "lost"), line["reason"]) for line in _lines(root / "errors.jsonl")
-    ]
-    return Run(root, tuple(made), tuple(rejected), tuple(failed), platform)
+    platform = _platform(root)
+    walks = dict(_read(root / "walks.jsonl", lambda line: (line["path"]["id"], (_path(line["path"]), _captions(line)))))
+    nothing: tuple[str, ...] = ()
+
+    def made(line: Mapping[str, Any]) -> Instruction:
+        path = _path(line["path"])
+        return instruction(line, path, walks.get(path.id, (path, nothing))[1], root)
+
+    def rejected(line: Mapping[str, Any]) -> Rejected:
+        last, item = line.get("last"), line["item"]
+        path, captions = walks.get(item, (Path(item, "", (), has_poses=False), nothing))
+        text = None if last is None else instruction(last, path, captions, root)
+        return Rejected(item, line["style"], line["reason"], text)
+
+    def failed(line: Mapping[str, Any]) -> Failed:
+        return Failed(line["item"], line.get("failure", "lost"), line["reason"])
+
+    return Run(
+        root,
+        tuple(_read(root / "instructions.jsonl", made, FORMAT)),
+        tuple(_read(root / "rejected.jsonl", rejected)),
+        tuple(_read(root / "errors.jsonl", failed)),
+        platform,
+    )
 
 
-def _platform(config: pathlib.Path) -> dict[str, str]:
-    found: dict[str, str] = {}
-    for line in config.read_text(encoding="utf-8").splitlines():
-        name, _, value = line.partition(" = ")
-        if line.startswith("["):
-            break
-        if name in ("format", "wayword", "platform", "data", "at"):
-            found[name] = str(json.loads(value))  # The program writes texts as JSON does.
-    form, by = found.pop("format", FOLDER_FORMAT), found.pop("wayword", None)
-    if form != FOLDER_FORMAT:
-        problem = f"its format is {form!r}, and this version reads {FOLDER_FORMAT!r}"
-        hint = f"read it with the version of Wayword that wrote it{f': {by}' if by else ''}"
-        raise errors.FormatError(problem, str(config), hint)
-    return found
+def _platform(folder: pathlib.Path) -> dict[str, Any]:
+    from . import _wayword
 
-
-def _lines(file: pathlib.Path) -> Iterator[dict[str, Any]]:
-    if not file.exists():
-        return
-    with open(file, encoding="utf-8") as lines:
-        for number, line in enumerate(lines, 1):
-            try:
-                value = json.loads(line)
-            except ValueError as error:
-                if not line.endswith("\n"):
-                    return  # A run that was killed, or is running: its last line is not whole yet.
-                raise errors.FormatError(f"it is not JSON: {error}", f"{file}: line {number}", _AGAIN) from error
-            if not isinstance(value, dict):
-                raise errors.FormatError("it is not a JSON object", f"{file}: line {number}", _AGAIN)
-            yield value
+    try:
+        settings = json.loads(_wayword.settings(str(folder)))
+    except errors.InputError as error:
+        raise errors.FormatError(error.what, str(folder / "config.toml"), error.hint) from error
+    return {name: settings[name] for name in ("platform", "data", "at", "island") if settings.get(name) is not None}
 
 
 _AGAIN = "the file was changed by hand or by another program: make the run again in another folder"
+_T = TypeVar("_T")
+
+
+def _read(file: pathlib.Path, of: Callable[[dict[str, Any]], _T], form: str | None = None) -> list[_T]:
+    """What each line of a file holds. A last line that is not whole yet, of a run that was killed or goes on, is left out."""
+    if not file.exists():
+        return []
+    try:
+        text = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise errors.FormatError(f"it is not UTF-8: {error}", str(file), _AGAIN) from error
+    except OSError as error:
+        raise errors.FileError(f"it cannot be read: {error}", str(file)) from error
+    found = []
+    for number, line in enumerate(text.splitlines(keepends=True), 1):
+        place = f"{file}: line {number}"
+        try:
+            value = json.loads(line)
+        except ValueError as error:
+            if not line.endswith("\n"):
+                break
+            raise errors.FormatError(f"it is not JSON: {error}", place, _AGAIN) from error
+        if form is not None and isinstance(value, dict) and value.get("format") != form:
+            problem = f"its format is {value.get('format')!r}, and this version reads {form!r}"
+            raise errors.FormatError(problem, place, "read it with the version of Wayword that wrote it")
+        try:
+            found.append(of(value))
+        except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+            problem = f"a field is missing or wrong ({type(error).__name__}: {error})"
+            raise errors.FormatError(problem, place, _AGAIN) from error
+    return found
 
 
 def _captions(walk: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(seen.get("summary", "") for seen in walk.get("observations", ()))
 
 
-def _read(
-    root: pathlib.Path, name: str, at: int, line: Mapping[str, Any], captions: Mapping[str, tuple[str, ...]]
-) -> Instruction:
-    if line.get("format") != FORMAT:
-        problem = f"its format is {line.get('format')!r}, and this version reads {FORMAT!r}"
-        hint = "read it with the version of Wayword that wrote it"
-        raise errors.FormatError(problem, f"{root / name}: line {at + 1}", hint)
-    try:
-        path = _path(line["path"])
-        return instruction(line, path, captions.get(path.id, ()), root)
-    except (KeyError, TypeError, ValueError) as error:
-        problem = f"a field is missing or wrong ({type(error).__name__}: {error})"
-        raise errors.FormatError(problem, f"{root / name}: line {at + 1}", _AGAIN) from error
-
-
 def instruction(
     line: Mapping[str, Any], path: Path, captions: Sequence[str], folder: pathlib.Path | None
 ) -> Instruction:
     """An instruction from its JSON object."""
-    findings = [Finding(f["check"], f["verdict"], f.get("reason", ""), _span(f.get("span"))) for f in line["findings"]]
     mentions = [Mention((m["span"][0], m["span"][1]), m["kind"], m["frame"]) for m in line["mentions"]]
     return Instruction(
         text=line["text"],
@@ -346,7 +356,7 @@ def instruction(
         verdict=line["verdict"],
         platform=line.get("platform", ""),
         path=path,
-        findings=tuple(findings),
+        findings=findings_of(line["findings"]),
         mentions=tuple(mentions),
         ambiguity=line.get("ambiguity"),
         provenance=line["provenance"],
@@ -354,6 +364,11 @@ def instruction(
         captions=tuple(captions),
         folder=folder,
     )
+
+
+def findings_of(findings: Sequence[Mapping[str, Any]]) -> tuple[Finding, ...]:
+    """Findings from their JSON objects."""
+    return tuple(Finding(f["check"], f["verdict"], f.get("reason", ""), _span(f.get("span"))) for f in findings)
 
 
 def _span(span: Sequence[int] | None) -> tuple[int, int] | None:
@@ -382,10 +397,3 @@ def _frame(value: Mapping[str, Any]) -> Frame:
         viewpoint=value.get("viewpoint"),
         level=value.get("level"),
     )
-
-
-def _rejected(line: Mapping[str, Any]) -> Rejected:
-    last = line.get("last")
-    path = Path(line["item"], "", ())
-    text = None if last is None else instruction(last, path, (), None)
-    return Rejected(line["item"], line["style"], line["reason"], text)

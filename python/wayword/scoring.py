@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -74,7 +73,10 @@ class Evaluation:
         return {short: mean for short, mean in means.items() if mean is not None}
 
     def __getitem__(self, figure: str) -> float:
-        return self.figures[figure]
+        mean = self._scores.mean(_metric(figure), self.rule)
+        if mean is None:
+            raise errors.InputError(f"no trajectory has the figure {figure}", hint="`figures` lists those there are")
+        return mean
 
     def interval(self, figure: str, *, resamples: int = 2000, seed: int = 0) -> Interval:
         """A figure with its interval, by a bootstrap over paths."""
@@ -89,7 +91,7 @@ class Evaluation:
         return self._scores.names()
 
     def values(self, figure: str) -> npt.NDArray[np.float64]:
-        """A figure of each instruction, shape (instructions,); NaN where there is none."""
+        """A figure of each instruction, shape (instructions,), read-only; NaN where there is none."""
         return np.frombuffer(self._scores.values(_metric(figure), self.rule), dtype=np.float64)
 
     def to_pandas(self) -> Any:
@@ -152,11 +154,21 @@ class Evaluator:
             partial: whether instructions may lack a trajectory. Leaderboards want every one.
 
         Raises:
-            SubmissionError: if anything is wrong with them; `problems` lists all of it, and nothing is scored.
+            SubmissionError: if anything is wrong with them; `problems` lists all of it (but the first alone of entries that
+                cannot be read), and nothing is scored.
         """
+        if rule not in (None, "distance", "visible"):
+            raise errors.InputError(f"there is no rule {rule!r}", hint='give "distance" or "visible"')
         if isinstance(submission, (str, os.PathLike)):
-            submission = _read(submission)
-        return Evaluation(self._judge.score(submission, partial), rule)
+            scores = self._judge.score_file(os.fspath(submission), partial)
+        elif isinstance(submission, (Mapping, Iterable)):
+            handed = dict(submission) if isinstance(submission, Mapping) else submission
+            scores = self._judge.score(handed, partial)
+        else:
+            raise errors.InputError(f"{submission!r} is no submission", hint="give a file, a list or a mapping")
+        if len(scores) == 0:
+            raise errors.InputError("no instruction has a trajectory, so there is nothing to score")
+        return Evaluation(scores, rule)
 
 
 def evaluate(
@@ -174,19 +186,3 @@ def evaluate(
     more than once."""
     evaluator = Evaluator(episodes, platform=platform, data=data, at=at, island=island)
     return evaluator.score(submission, rule=rule, partial=partial)
-
-
-def _read(file: PathLike) -> Sequence[Mapping[str, Any]]:
-    import gzip
-
-    try:
-        with open(file, "rb") as opened_file:
-            raw = opened_file.read()
-        found = json.loads(gzip.decompress(raw) if raw.startswith(b"\x1f\x8b") else raw)
-    except OSError as error:
-        raise errors.FileError(f"it cannot be read: {error}", os.fspath(file)) from error
-    except ValueError as error:
-        raise errors.FormatError(f"it is not JSON: {error}", os.fspath(file)) from error
-    if not isinstance(found, list):
-        raise errors.FormatError("it is not a JSON list of trajectories", os.fspath(file))
-    return found

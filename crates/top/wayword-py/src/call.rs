@@ -6,13 +6,14 @@ use pyo3::prelude::*;
 use std::{
     any::Any,
     ffi::OsString,
+    path::PathBuf,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
         mpsc::{RecvTimeoutError, channel},
     },
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 use wayword::{
     cli::Cli,
@@ -25,6 +26,8 @@ use wayword_platforms::process;
 
 /// How often a call looks for Ctrl-C and tells how far it is.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// How long the end of the interpreter waits for a command of another thread.
+const FINISHED_WITHIN: Duration = Duration::from_secs(20);
 /// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
 const STACK: usize = 8 << 20;
 
@@ -68,8 +71,9 @@ pub(crate) fn call(
     hears: Py<PyAny>,
 ) -> PyResult<(u8, String)> {
     say_how_to_start(guardian);
+    let name = arguments.first().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let typed = std::iter::once(OsString::from("wayword")).chain(arguments);
-    let cli = Cli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&told.to_string())))?;
+    let cli = Cli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&name, &told.to_string())))?;
     let heard = Arc::new(Heard::default());
     let output = Output::heard_by(Arc::clone(&heard) as Arc<dyn Listener>);
     let exit =
@@ -78,10 +82,10 @@ pub(crate) fn call(
 }
 
 /// What the parser of the command line says: the error without its usage, and no place.
-fn in_parts(told: &str) -> (String, Option<String>, Option<String>) {
+fn in_parts(command: &str, told: &str) -> (String, Option<String>, Option<String>) {
     let told = told.trim_start_matches("error: ");
     let what = ["\n\nUsage:", "\n\nFor more"].iter().fold(told, |told, end| told.split(end).next().unwrap_or(told));
-    (what.trim().to_owned(), None, Some("the flags are those of the command: see `wayword COMMAND --help`".to_owned()))
+    (what.trim().to_owned(), None, Some(format!("arguments are the flags of `wayword {command} --help`")))
 }
 
 /// Children of this process are guarded by the interpreter, which this program is a module of.
@@ -111,27 +115,44 @@ impl Listener for Heard {
     }
 }
 
+/// What came of telling Python.
+enum Told {
+    Well,
+    /// Python received a signal.
+    Signal(PyErr),
+    /// What hears raised an exception.
+    Raised(PyErr),
+    /// The interpreter ends.
+    Ended,
+}
+
 impl Heard {
-    /// Tells Python what was said since the last time, and how far the work is. A signal that Python received is raised here.
-    fn tell(&self, hears: &Py<PyAny>) -> PyResult<()> {
+    /// Tells Python what was said since the last time, and how far the work is.
+    fn tell(&self, hears: Option<&Py<PyAny>>) -> Told {
         let said = std::mem::take(&mut *lock(&self.said));
         let bar = lock(&self.bar).clone();
-        Python::attach(|py| {
-            py.check_signals()?;
-            for text in said {
-                hears.call_method1(py, "say", (text,))?;
+        let told = Python::try_attach(|py| {
+            if let Err(error) = py.check_signals() {
+                return Told::Signal(error);
             }
-            if let Some(bar) = bar {
-                let text = [bar.prefix(), bar.message()].join(" ").trim().to_owned();
-                hears.call_method1(py, "progress", (bar.position(), bar.length().unwrap_or_default(), text))?;
-            }
-            Ok(())
-        })
+            let Some(hears) = hears else { return Told::Well };
+            let tell = || -> PyResult<()> {
+                for text in said {
+                    hears.call_method1(py, "say", (text,))?;
+                }
+                if let Some(bar) = bar {
+                    let text = [bar.prefix(), bar.message()].join(" ").trim().to_owned();
+                    hears.call_method1(py, "progress", (bar.position(), bar.length().unwrap_or_default(), text))?;
+                }
+                Ok(())
+            };
+            tell().map_or_else(Told::Raised, |()| Told::Well)
+        });
+        told.unwrap_or(Told::Ended)
     }
 }
 
-/// Does work in a thread, with the interpreter released. Ctrl-C interrupts the work, which comes to its end; then the exception
-/// is raised. A second one ends the children that the work waits for.
+/// Runs a command in its turn.
 fn waited<T: Send>(
     py: Python<'_>,
     heard: &Heard,
@@ -139,8 +160,30 @@ fn waited<T: Send>(
     work: impl FnOnce() -> Result<T, Error> + Send,
 ) -> PyResult<Result<T, Error>> {
     let _turn = Turn::wait(py)?;
+    interrupt::forget();
+    let done = in_thread(py, heard, Some(hears), work);
+    // So that the children of other objects start again.
+    interrupt::forget();
+    done
+}
+
+/// Does work that keeps nothing, such as opening a world. Ctrl-C ends the children that it waits for.
+pub(crate) fn patiently<T: Send>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, Error> + Send,
+) -> PyResult<Result<T, Error>> {
+    in_thread(py, &Heard::default(), None, work)
+}
+
+/// Does work in a thread, with the interpreter released. The first Ctrl-C interrupts a command, which comes to its end; the next
+/// one, or the first where there is no command, ends the children that the work waits for. Then the exception is raised.
+fn in_thread<T: Send>(
+    py: Python<'_>,
+    heard: &Heard,
+    hears: Option<&Py<PyAny>>,
+    work: impl FnOnce() -> Result<T, Error> + Send,
+) -> PyResult<Result<T, Error>> {
     let (done, raised) = py.detach(|| {
-        interrupt::forget();
         thread::scope(|scope| {
             let (ends, ended) = channel::<()>();
             let worker = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, move || {
@@ -149,19 +192,36 @@ fn waited<T: Send>(
                 result
             });
             let Ok(worker) = worker else { return (None, None) };
-            let mut raised = None;
+            let mut raised: Option<PyErr> = None;
+            let mut is_ended = false;
             while ended.recv_timeout(LOOK_EVERY) == Err(RecvTimeoutError::Timeout) {
-                if let Err(error) = heard.tell(hears) {
-                    if raised.is_some() {
-                        process::end_all();
+                // After an exception nothing more is told.
+                match heard.tell(hears.filter(|_| raised.is_none())) {
+                    Told::Well => {}
+                    Told::Signal(error) => {
+                        is_ended |= raised.is_some() || hears.is_none();
+                        raised.get_or_insert(error);
                     }
-                    raised.get_or_insert(error);
+                    Told::Raised(error) => raised = Some(error),
+                    Told::Ended => is_ended = true,
+                }
+                if hears.is_some() && (raised.is_some() || is_ended) {
                     interrupt::ask();
+                }
+                if is_ended {
+                    process::end_all();
                 }
             }
             let done = worker.join();
-            let told = heard.tell(hears);
-            (Some(done), raised.or(told.err()))
+            if raised.is_none()
+                && let Told::Signal(error) | Told::Raised(error) = heard.tell(hears)
+            {
+                raised = Some(error);
+            }
+            if is_ended {
+                process::start_again();
+            }
+            (Some(done), raised)
         })
     });
     match (done, raised) {
@@ -170,6 +230,24 @@ fn waited<T: Send>(
         (Some(Err(panic)), None) => Err(raised_of(py, "internal", (words(&*panic), None, None))),
         (None, None) => Err(raised_of(py, "internal", ("no thread can be started".to_owned(), None, None))),
     }
+}
+
+/// Ends a command that another thread runs, before the interpreter ends: it comes to its end, or is left after some seconds.
+#[pyfunction]
+pub(crate) fn finish(py: Python<'_>) {
+    let begun = Instant::now();
+    while RUNS.load(Ordering::Acquire) && begun.elapsed() < FINISHED_WITHIN {
+        interrupt::ask();
+        py.detach(|| thread::sleep(LOOK_EVERY));
+    }
+    py.detach(process::end_all);
+}
+
+/// The settings of a run folder, as JSON.
+#[pyfunction]
+pub(crate) fn settings(py: Python<'_>, folder: PathBuf) -> PyResult<String> {
+    let settings = wayword::run::settings_of(&folder).map_err(|error| raised(py, error))?;
+    serde_json::to_string(&settings).map_err(|error| raised_of(py, "internal", (error.to_string(), None, None)))
 }
 
 /// What a panic said.

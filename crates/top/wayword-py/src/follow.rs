@@ -1,9 +1,12 @@
 //! Which walks a text may mean.
 
-use crate::raise::{raised, raised_of};
+use crate::{
+    call::patiently,
+    raise::{raised, raised_of},
+};
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
-use wayword::{error::Error, follow::KnownScenes, meant::MeantWalk, platforms};
+use wayword::{follow::KnownScenes, meant::MeantWalk, platforms};
 use wayword_core::{Heading, Platform, SceneId, ViewpointId};
 
 /// The scenes of a platform, each surveyed when it is first asked for.
@@ -24,21 +27,21 @@ impl Map {
         at: Option<&str>,
         island: Option<usize>,
     ) -> PyResult<Self> {
-        let opened = py.detach(|| platforms::open_named(platform, data.as_deref(), at, island));
+        let opened = patiently(py, || platforms::open_named(platform, data.as_deref(), at, island))?;
         Ok(Self { platform: opened.map_err(|error| raised(py, error))?, scenes: KnownScenes::new() })
     }
 
     /// The names of the scenes.
     fn scenes(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        let scenes = py.detach(|| self.platform.scenes()).map_err(|error| raised(py, error.into()))?;
+        let scenes = patiently(py, || Ok(self.platform.scenes()?))?.map_err(|error| raised(py, error))?;
         Ok(scenes.into_iter().map(|scene| scene.to_string()).collect())
     }
 
     /// The viewpoints of a scene: positions of the eye, metres.
-    fn viewpoints(&self, py: Python<'_>, scene: &str) -> PyResult<BTreeMap<String, [f64; 3]>> {
+    fn viewpoints(&self, py: Python<'_>, scene: &str) -> PyResult<BTreeMap<String, (f64, f64, f64)>> {
         let scene = id(py, SceneId::new(scene))?;
-        let graph = py.detach(|| self.platform.graph(&scene)).map_err(|error| raised(py, error.into()))?;
-        let place = |id: &ViewpointId| Some((id.to_string(), graph.position(id)?.to_array()));
+        let graph = patiently(py, || Ok(self.platform.graph(&scene)?))?.map_err(|error| raised(py, error))?;
+        let place = |id: &ViewpointId| Some((id.to_string(), graph.position(id)?.into()));
         Ok(graph.viewpoints().filter_map(place).collect())
     }
 
@@ -53,8 +56,7 @@ impl Map {
         let (scene, start, heading) = from;
         let (scene, start) = (id(py, SceneId::new(scene))?, id(py, ViewpointId::new(start))?);
         let heading = id(py, Heading::new(heading))?;
-        let found: Result<Vec<MeantWalk>, Error> =
-            py.detach(|| self.scenes.meant(&*self.platform, (&scene, &start, heading), text, most));
+        let found = patiently(py, || self.scenes.meant(&*self.platform, (&scene, &start, heading), text, most))?;
         let walk = |walk: MeantWalk| (walk.viewpoints.iter().map(ToString::to_string).collect(), walk.share);
         Ok(found.map_err(|error| raised(py, error))?.into_iter().map(walk).collect())
     }

@@ -1,18 +1,23 @@
 //! Trajectories and their figures.
 
-use crate::raise::{raised, raised_of};
+use crate::{
+    call::patiently,
+    raise::{raised, raised_of},
+};
 use pyo3::{
+    exceptions::{PyLookupError, PyTypeError, PyValueError},
     intern,
     prelude::*,
     types::{PyBytes, PyDict, PyList, PyString, PyTuple},
 };
-use std::{ops::Range, path::PathBuf};
+use std::{collections::BTreeSet, ops::Range, path::PathBuf};
 use wayword::{
     episodes,
     error::Error,
     judge::{Judge as Episodes, Problems, Scores as Figures, Scoring},
     platforms,
 };
+use wayword_formats::submission;
 use wayword_metrics::{Metric, Rule};
 
 /// The episodes that trajectories are scored by.
@@ -31,16 +36,22 @@ impl Judge {
         at: Option<&str>,
         island: Option<usize>,
     ) -> PyResult<Self> {
-        let judge = py.detach(|| -> Result<Episodes, Error> {
+        let judge = patiently(py, || -> Result<Episodes, Error> {
             let platform = platforms::open_named(platform, data.as_deref(), at, island)?;
             Episodes::new(&episodes::read(&episodes, platform.as_ref())?, platform.as_ref())
-        });
+        })?;
         judge.map(Self).map_err(|error| raised(py, error))
     }
 
     /// How many instructions there are.
     fn __len__(&self) -> usize {
         self.0.instructions()
+    }
+
+    /// The figures of the trajectories in a file.
+    fn score_file(&self, py: Python<'_>, file: PathBuf, partial: bool) -> PyResult<Scores> {
+        let scored = py.detach(|| self.0.score_all(&submission::read(&file), &BTreeSet::new(), partial));
+        scored.map(|(scores, _)| Scores(scores)).map_err(|problems| refused(py, &problems))
     }
 
     /// The figures of trajectories: a list of `{"instr_id", "trajectory", "predObjId"}`, or a mapping from instructions to
@@ -86,7 +97,14 @@ fn each_trajectory<'py>(
     mut take: impl FnMut(&Bound<'py, PyAny>, &Bound<'py, PyAny>, Option<&Bound<'py, PyAny>>) -> PyResult<()>,
 ) -> PyResult<()> {
     let py = submission.py();
-    let flawed = |at: usize| move |error: PyErr| unread(py, at, &error.to_string());
+    let flawed = |at: usize| {
+        move |error: PyErr| {
+            let is_ours = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
+            // Anything else is what the caller's own iterators raise.
+            let is_ours = is_ours || error.is_instance_of::<PyLookupError>(py);
+            if is_ours { unread(py, at, &error.to_string()) } else { error }
+        }
+    };
     if let Ok(mapping) = submission.cast::<PyDict>() {
         for (at, (name, trajectory)) in mapping.iter().enumerate() {
             take(&name, &trajectory, None).map_err(flawed(at))?;
@@ -150,6 +168,8 @@ impl Part {
             for step in list.iter() {
                 self.step(&step)?;
             }
+        } else if trajectory.is_instance_of::<PyString>() {
+            return Err(PyTypeError::new_err("the trajectory is a text, and not a list of viewpoints"));
         } else {
             for step in trajectory.try_iter()? {
                 self.step(&step?)?;

@@ -19,11 +19,13 @@ pub(crate) fn put_world(
     spacing_m: Option<f64>,
 ) -> PyResult<PathBuf> {
     let inside = Inside::new(move |request| {
-        Python::attach(|py| {
+        let answered = Python::try_attach(|py| {
             let answered = answer.call1(py, (PyBytes::new(py, request),)).and_then(|line| line.extract::<Vec<u8>>(py));
             // An exception that the world does not turn into an answer is told like the last words of a child.
             answered.unwrap_or_else(|error| error.to_string().into_bytes())
-        })
+        });
+        // The interpreter ends, and the one who asked with it.
+        answered.unwrap_or_default()
     });
     let options = ProcessOptions::inside(name, inside).sized(width_px, height_px, spacing_m);
     let refused = |reason| raised_of(py, "platform", (reason, Some(name.to_owned()), None));

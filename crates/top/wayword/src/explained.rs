@@ -1,6 +1,6 @@
 //! An error in parts, for a program that this one runs in.
 
-use crate::error::Error;
+use crate::error::{Error, Exit};
 use std::{fmt::Display, path::Path};
 use wayword_core::PlatformError;
 use wayword_formats::FormatError;
@@ -11,8 +11,8 @@ const HINT: &str = "\nhint: ";
 /// An error in parts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explained {
-    /// Its kind: `input`, `file`, `format`, `platform`, `lost`, `style`, `model`, `ledger`, `walk`, `study`, `busy` or
-    /// `interrupted`.
+    /// Its kind: `lost`, `stopped`, `busy` and `interrupted` as the exit codes have them; else what it is about: `input`, `file`,
+    /// `format`, `platform`, `style`, `model`, `ledger`, `walk` or `study`.
     pub kind: &'static str,
     /// What is wrong.
     pub what: String,
@@ -78,9 +78,16 @@ fn file_of(error: &Error) -> Option<&Path> {
 fn kind(error: &Error) -> &'static str {
     use wayword_navigation::WalkError;
     use wayword_synthesis::observe::ObserveError;
+    match error.exit_code() {
+        Exit::Lost => return "lost",
+        Exit::Stopped => return "stopped",
+        Exit::Busy => return "busy",
+        Exit::Interrupted => return "interrupted",
+        Exit::Done | Exit::BadInput | Exit::WithLoss => {}
+    }
     match error {
-        Error::Platform(of) | Error::Observe(ObserveError::Platform(of)) | Error::Walk(WalkError::Platform(of)) => {
-            if matches!(of, PlatformError::Lost { .. }) { "lost" } else { "platform" }
+        Error::Platform(_) | Error::Observe(ObserveError::Platform(_)) | Error::Walk(WalkError::Platform(_)) => {
+            "platform"
         }
         Error::Format(FormatError::Io { .. }) => "file",
         Error::Format(_) => "format",
@@ -98,8 +105,8 @@ fn kind(error: &Error) -> &'static str {
         Error::House(_) | Error::Io { .. } => "file",
         Error::Usage { .. } => "input",
         Error::ChangedScene { .. } => "platform",
-        Error::Interrupted => "interrupted",
-        Error::Busy(_) | Error::BusyElsewhere { .. } => "busy",
+        // Their exit codes say it.
+        Error::Interrupted | Error::Busy(_) | Error::BusyElsewhere { .. } => "input",
     }
 }
 

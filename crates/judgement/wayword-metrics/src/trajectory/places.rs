@@ -40,7 +40,7 @@ impl Places {
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         let head = head(name);
         let first = self.heads.partition_point(|other| *other < head);
-        // Names have no zeros, so one that is filled up with them is no other's beginning.
+        // A name that is filled up with zeros would be found for one that ends in them. Real names have none.
         if is_short(name) && *self.heads.get(first)? == head && self.tails[first] == tail(name) {
             return Some(first);
         }
@@ -52,7 +52,7 @@ impl Places {
 }
 
 fn is_short(name: &str) -> bool {
-    name.len() <= HEAD + TAIL
+    name.len() == HEAD + TAIL || name.len() < HEAD + TAIL && !name.as_bytes().contains(&0)
 }
 
 fn head(name: &str) -> u64 {

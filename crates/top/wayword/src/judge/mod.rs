@@ -10,9 +10,15 @@ pub use scores::{LEVEL, Scored, Scores};
 
 use crate::{demands::Demands, episodes, error::Error};
 use scores::Instruction;
-use std::{collections::HashMap, sync::Arc};
-use wayword_core::Platform;
-use wayword_formats::{Episode, submission::instr_id};
+use std::{
+    collections::{BTreeSet, HashMap},
+    sync::Arc,
+};
+use wayword_core::{ObjectId, Platform};
+use wayword_formats::{
+    Episode,
+    submission::{Reading, instr_id},
+};
 use wayword_metrics::{Course, Distances, Invalid, Score};
 
 /// The episodes that trajectories are scored by.
@@ -83,6 +89,34 @@ impl Judge {
     fn find(&self, instruction: &str, likely: usize) -> Option<usize> {
         let is_it = self.instructions.get(likely).is_some_and(|known| known.name == instruction);
         if is_it { Some(likely) } else { self.places.get(instruction).copied() }
+    }
+
+    /// Scores what a file of trajectories has. Those for the instructions `beyond` are left out; returns how many these are.
+    ///
+    /// # Errors
+    /// All problems: those of the file first.
+    pub fn score_all(
+        &self,
+        reading: &Reading,
+        beyond: &BTreeSet<String>,
+        is_partial: bool,
+    ) -> Result<(Scores, usize), Problems> {
+        let mut scoring = self.begin();
+        let mut left_out = 0;
+        for submitted in &reading.submitted {
+            if beyond.contains(&submitted.instr_id) {
+                left_out += 1;
+                continue;
+            }
+            let viewpoints = submitted.trajectory.iter().map(|posed| posed.viewpoint.as_str());
+            scoring.take(&submitted.instr_id, viewpoints, submitted.object.as_ref().map(ObjectId::as_str));
+        }
+        for flawed in reading.flawed.iter().filter(|flawed| !beyond.contains(*flawed)) {
+            scoring.take_flawed(flawed);
+        }
+        // After the place where the file broke off a trajectory may be there all the same.
+        let scores = scoring.end(Problems::of_file(&reading.problems), is_partial || !reading.is_whole)?;
+        Ok((scores, left_out))
     }
 
     fn score<'n>(

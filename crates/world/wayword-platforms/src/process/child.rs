@@ -3,7 +3,7 @@
 use super::{
     answer::{Answer, MAX_LINE_BYTES, answer},
     fault::Fault,
-    group::Group,
+    group::{Group, is_ended},
     guard::FAREWELL,
     options::{Inside, ProcessOptions},
     stderr::LastWords,
@@ -120,6 +120,8 @@ impl Running {
             let left = within.saturating_sub(asked.elapsed());
             match self.lines.recv_timeout(left.min(LOOK_EVERY)) {
                 Err(RecvTimeoutError::Timeout) if left <= LOOK_EVERY => return Err(RecvTimeoutError::Timeout),
+                // A world within this process cannot be killed, but its caller need not wait for it.
+                Err(RecvTimeoutError::Timeout) if self.group.is_none() && is_ended() => return Ok(Line::End),
                 Err(RecvTimeoutError::Timeout) if self.has_ended() => {
                     // Its last line may not have arrived yet.
                     return Ok(self.lines.recv_timeout(AFTERMATH).unwrap_or(Line::End));

@@ -47,6 +47,11 @@ pub fn end_all() {
     }
 }
 
+/// Whether all children were ended, and none may start.
+pub(crate) fn is_ended() -> bool {
+    lock(&LIVING).is_closed
+}
+
 /// Lets children start again after [`end_all`], in a program that did not end.
 pub fn start_again() {
     lock(&LIVING).is_closed = false;

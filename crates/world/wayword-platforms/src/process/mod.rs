@@ -2,8 +2,8 @@
 //!
 //! Wayword writes one request per line to the child's standard input and reads one answer per line from its standard
 //! output. `docs/PROCESS.md` describes requests and answers, and `python/wayword/platform.py` implements the child's
-//! side in Python. A world within this process ([`Inside`]) is asked with the same lines. The child converts to Wayword's frame (z up, metres, radians clockwise from +y) and names that frame
-//! in its greeting.
+//! side in Python. A world within this process ([`Inside`]) is asked with the same lines. The child converts to Wayword's
+//! frame (z up, metres, radians clockwise from +y) and names that frame in its greeting.
 //!
 //! The child is not trusted: lines, pictures, counts and times are bounded. If it dies, hangs, floods its output or
 //! sends something that is not an answer, the request under way fails and the child is restarted, a bounded number of

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::{
     fmt,
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{Arc, Mutex, PoisonError},
     time::Duration,
 };
 use wayword_core::PlatformError;
@@ -56,20 +56,22 @@ pub struct ProcessOptions {
 
 /// A world within this process: an object of the interpreter that this program runs in.
 #[derive(Clone)]
-pub struct Inside(Arc<Answers>);
+pub struct Inside(Arc<Mutex<Box<Answers>>>);
 
 /// Gives the answer to a request, each a line without its end.
-type Answers = dyn Fn(&[u8]) -> Vec<u8> + Send + Sync;
+type Answers = dyn FnMut(&[u8]) -> Vec<u8> + Send;
 
 impl Inside {
     /// A world that answers a request with a line, as `docs/PROCESS.md` says, both without the end of the line.
-    pub fn new(answers: impl Fn(&[u8]) -> Vec<u8> + Send + Sync + 'static) -> Self {
-        Self(Arc::new(answers))
+    /// It is asked one request at a time, also after a request that took too long.
+    pub fn new(answers: impl FnMut(&[u8]) -> Vec<u8> + Send + 'static) -> Self {
+        Self(Arc::new(Mutex::new(Box::new(answers))))
     }
 
     /// The answer to a line that was sent.
     pub(crate) fn answer(&self, request: &[u8]) -> Line {
-        let answer = (self.0)(request.trim_ascii_end());
+        let mut answers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let answer = answers(request.trim_ascii_end());
         if answer.len() > MAX_LINE_BYTES { Line::TooLong } else { Line::Whole(answer) }
     }
 }

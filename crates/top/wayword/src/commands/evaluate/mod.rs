@@ -7,7 +7,7 @@ use crate::{
     cli::Evaluate as Args,
     episodes,
     error::{Error, Exit},
-    judge::{Judge, Problems, Scores},
+    judge::{Judge, Scores},
     output::Output,
     platforms,
     run::write_whole,
@@ -15,10 +15,9 @@ use crate::{
 use figures::{Drawn, Report};
 use refusal::{Refusal, no_submission};
 use std::{collections::BTreeSet, fs, path::Path};
-use wayword_core::ViewpointId;
 use wayword_formats::{
     Episode,
-    submission::{self, Reading, instr_id},
+    submission::{self, instr_id},
 };
 use wayword_metrics::Rule;
 
@@ -49,7 +48,9 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
         return Err(error);
     }
     let judge = Judge::new(episodes, platform.as_ref())?;
-    let (scores, left_out) = match scored(&judge, beyond, &reading, args.partial) {
+    let names = |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
+    let beyond: BTreeSet<String> = beyond.iter().flat_map(|episode| -> Vec<String> { names(episode) }).collect();
+    let (scores, left_out) = match judge.score_all(&reading, &beyond, args.partial) {
         Ok(scored) => scored,
         Err(problems) => {
             let refusal = Refusal::new(&args.submission, problems);
@@ -70,28 +71,6 @@ pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     let report = Report::new(args, &scores, covered, &rules, drawn);
     output.data(&report, &report);
     Ok(Exit::Done)
-}
-
-/// The figures of a submission, and how many of its trajectories are for the items `beyond` the limit.
-fn scored(judge: &Judge, beyond: &[Episode], reading: &Reading, is_partial: bool) -> Result<(Scores, usize), Problems> {
-    let names = |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
-    let beyond: BTreeSet<String> = beyond.iter().flat_map(|episode| -> Vec<String> { names(episode) }).collect();
-    let mut scoring = judge.begin();
-    let mut left_out = 0;
-    for submitted in &reading.submitted {
-        if beyond.contains(&submitted.instr_id) {
-            left_out += 1;
-            continue;
-        }
-        let viewpoints = submitted.trajectory.iter().map(|posed| ViewpointId::as_str(&posed.viewpoint));
-        scoring.take(&submitted.instr_id, viewpoints, submitted.object.as_ref().map(|object| object.as_str()));
-    }
-    for flawed in reading.flawed.iter().filter(|flawed| !beyond.contains(*flawed)) {
-        scoring.take_flawed(flawed);
-    }
-    // After the place where the file broke off a trajectory may be there all the same.
-    let scores = scoring.end(Problems::of_file(&reading.problems), is_partial || !reading.is_whole)?;
-    Ok((scores, left_out))
 }
 
 /// Refuses a `--per-item` file that is one of the inputs, under whatever name.
