@@ -61,3 +61,12 @@ fn values_of_files_stay_values() {
     let row = rest.lines().find(|line| line.contains("script")).unwrap();
     assert_eq!(row.replace("\\|", "").matches('|').count(), 8, "{row}");
 }
+
+#[test]
+fn the_card_is_cited_as_the_readme_is() {
+    let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../README.md");
+    let readme = std::fs::read_to_string(readme).unwrap();
+    let (_, rest) = readme.split_once("```bibtex").unwrap();
+    let (entries, _) = rest.split_once("```").unwrap();
+    assert!(card("houses", &records("house", "rules")).contains(entries));
+}
