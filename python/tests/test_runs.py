@@ -73,9 +73,7 @@ def test_cards_show_frames_and_escape_every_text(houses):
         folder=houses.folder,
     )
     card = hostile._repr_html_()
-    assert (
-        not re.search(r"<(img|/figcaption><)", card.replace("</figcaption></figure>", "")) and "path ../../etc" in card
-    )
+    assert not re.search(r"<(img|/figcaption><)", card.replace("</figcaption></figure>", ""))
     assert "<script" not in card and "onerror=alert(1)>" not in card and "base64" not in card
     assert str(len(houses.instructions)) in houses._repr_html_()
 

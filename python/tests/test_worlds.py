@@ -108,7 +108,6 @@ def test_a_settings_file_counts_where_no_argument_is_given(tmp_path):
     config.write_text('style = ["reverie"]\npaths = 1\nmetres = "3..14"\nhops = "2..6"\n')
     run = wayword.generate(tmp_path / "run", platform=Hall(), config=config)
     assert {text.style for text in run} == {"reverie"}
-    both = wayword.generate(
-        tmp_path / "both", platform=Hall(), paths=1, hops=(2, 6), metres=(3, 14), style=("r2r", "reverie")
-    )
+    paths = dict(paths=1, hops=(2, 6), metres=(3, 14))
+    both = wayword.generate(tmp_path / "both", platform=Hall(), style=("r2r", "reverie"), **paths)
     assert {text.style for text in both} == {"r2r", "reverie"}

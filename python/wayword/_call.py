@@ -121,8 +121,8 @@ def opened(
     *,
     is_kept: bool = False,
 ) -> contextlib.AbstractContextManager[dict[str, Any]]:
-    """The flags that name a platform. A world of this process is known while the context lasts; where a run keeps its name
-    (`is_kept`), it is known by its class, and worlds of one class take turns."""
+    """The flags that name a platform. A world of this process is known while the context lasts; where a run keeps its
+    name (`is_kept`), it is known by its class, and worlds of one class take turns."""
     if platform is None or isinstance(platform, str):
         named = {"platform": platform, "data": None if data is None else os.fspath(data), "at": at, "island": island}
         return contextlib.nullcontext(named)

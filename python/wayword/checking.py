@@ -87,9 +87,7 @@ def check(
             text["path"],
             text["text"],
             text["verdict"],
-            tuple(
-                Finding(f["check"], f["verdict"], f.get("reason", ""), _span(f.get("span"))) for f in text["findings"]
-            ),
+            findings_of(text["findings"]),
         )
         for text in report["not_passed"]
     )

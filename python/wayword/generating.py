@@ -48,7 +48,8 @@ def generate(
         scan: only these scenes.
         hops: least and most hops of a random path.
         metres: least and most length of a random path.
-        style: r2r, reverie, a TOML file, or NAME=DATASET; several are written for each path. Without it, r2r and reverie.
+        style: r2r, reverie, a TOML file, or NAME=DATASET; several are written for each path. Without it, r2r and
+            reverie.
         llm: the model that asks, summarises and writes, as PROVIDER/MODEL; without it rules do.
         see: what looks: labels, or a model.
         config: settings as TOML.

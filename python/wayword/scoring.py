@@ -154,8 +154,8 @@ class Evaluator:
             partial: whether instructions may lack a trajectory. Leaderboards want every one.
 
         Raises:
-            SubmissionError: if anything is wrong with them; `problems` lists all of it (but the first alone of entries that
-                cannot be read), and nothing is scored.
+            SubmissionError: if anything is wrong with them; nothing is scored. `problems` lists all of it, but only the
+                first of entries that cannot be read.
         """
         if rule not in (None, "distance", "visible"):
             raise errors.InputError(f"there is no rule {rule!r}", hint='give "distance" or "visible"')

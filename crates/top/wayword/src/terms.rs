@@ -1,6 +1,8 @@
 //! Whose scenes a platform shows, and what has to be said before pictures of them or texts about them go to others.
 
-use crate::{error::Error, output::Output};
+#[cfg(any(feature = "parquet", feature = "study"))]
+use crate::error::Error;
+use crate::output::Output;
 use std::collections::BTreeSet;
 
 /// Platforms whose scenes this program makes itself. What comes of them is the user's.
@@ -32,6 +34,7 @@ pub(crate) fn of(platform: &str) -> &'static str {
 ///
 /// # Errors
 /// `problem` where the right is needed and was not given; `to` is what the user wants to do with them.
+#[cfg(any(feature = "parquet", feature = "study"))]
 pub(crate) fn check(platform: &str, has_the_right: bool, problem: String, to: &str) -> Result<(), Error> {
     if !are_somebodys(platform) || has_the_right {
         return Ok(());
@@ -46,7 +49,7 @@ pub(crate) fn tell<'p>(platforms: impl Iterator<Item = &'p str>, output: &Output
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, any(feature = "parquet", feature = "study")))]
 mod tests {
     use super::*;
 

@@ -207,16 +207,24 @@ fn bad_combinations_are_refused_with_what_to_do() {
     let building = Building::new();
     building.run_over_episodes("run");
     let before = files(&building.path("."));
-    let cases: [(&[&str], &str, &str); 7] = [
+    let cases: [(&[&str], &str, &str); 11] = [
         (&["--run", "run", "--format", "reverie"], "texts of one style only", "--style"),
         (
             &["--run", "run", "--run", "run", "--style", "r2r", "--format", "r2r"],
-            "already has the same instruction",
-            "leave one",
+            "takes one run only",
+            "--format wayword",
         ),
         (&["--run", "run", "--style", "r2r", "--format", "r2r", "--val-share", "0.1"], "no splits", "--format wayword"),
         (&["--run", "run", "--format", "wayword", "--val-share", "1.5"], "is not a share", "from 0 to 1"),
         (&["--run", "run", "--format", "wayword", "--val-share", "nan"], "is not a share", "from 0 to 1"),
+        (&["--run", "run", "--format", "wayword", "--split", "val"], "--split puts all texts", "--val-share"),
+        (&["--run", "run", "--style", "r2r", "--format", "r2r", "--tokenizer", "x"], "--format duet", "leave them out"),
+        (
+            &["--run", "run", "--style", "r2r", "--format", "r2r", "--split", "a/b"],
+            "\"a/b\" is not the name",
+            "letters",
+        ),
+        (&["--run", "run", "--style", "r2r", "--format", "duet"], "--tokenizer is missing", "models fetch --tokenizer"),
         (&["--run", "run", "--style", "poem", "--format", "r2r"], "no instruction of style poem", "r2r, reverie"),
         (&["--run", "nowhere", "--style", "r2r", "--format", "r2r"], "nowhere", "instructions.jsonl"),
     ];
@@ -226,6 +234,57 @@ fn bad_combinations_are_refused_with_what_to_do() {
         assert!(error.contains(problem) && error.contains(hint), "{arguments:?}: {error}");
         assert!(files(&building.path(".")) == before, "{arguments:?} left something behind");
     }
+}
+
+/// The run's scene gets a name that is officially held out.
+fn rename_scene(building: &Building, name: &str) {
+    let file = building.path("run/instructions.jsonl");
+    let renamed = std::fs::read_to_string(&file).unwrap().replace(SCAN, name);
+    std::fs::write(file, renamed).unwrap();
+}
+
+#[test]
+fn a_scene_that_is_held_out_does_not_slip_into_another_split() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    let export = |more: &[&str]| {
+        building.wayword(&[&["export", "--run", "run", "--style", "r2r", "--out", "out.json"][..], more].concat())
+    };
+    let split = || building.lines("out.json")[0]["split"].clone();
+    // Without an official split it is what the name of the episodes' file says.
+    assert_eq!((export(&["--format", "rxr"]).code, split()), (Some(0), json!("val_seen")));
+    assert_eq!((export(&["--format", "rxr", "--split", "train"]).code, split()), (Some(0), json!("train")));
+    rename_scene(&building, "2azQ1b91cZZ");
+    for more in
+        [&["--format", "rxr"][..], &["--format", "rxr", "--split", "train"], &["--format", "r2r", "--split", "train"]]
+    {
+        let ran = export(more);
+        let error = ran.refused();
+        assert!(error.contains("2azQ1b91cZZ is of the official split val_unseen"), "{error}");
+        assert!(error.contains("hint: give --split val_unseen"), "{error}");
+    }
+    assert_eq!((export(&["--format", "rxr", "--split", "val_unseen"]).code, split()), (Some(0), json!("val_unseen")));
+    let ran = export(&["--format", "r2r"]);
+    assert!(ran.code == Some(0) && ran.err.contains("10 texts in scenes of the official split val_unseen"), "{ran:?}");
+    // A run over random paths has no episodes, and so the official split counts.
+    std::fs::remove_file(building.path("run/config.toml")).unwrap();
+    assert_eq!((export(&["--format", "rxr"]).code, split()), (Some(0), json!("val_unseen")));
+    let ran =
+        building.wayword(&["export", "--run", "run", "--format", "wayword", "--val-share", "0", "--out", "out.jsonl"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(building.lines("out.jsonl").iter().all(|line| line["split"] == "val"));
+}
+
+#[test]
+fn one_line_tells_the_terms_of_scenes_that_are_somebodys() {
+    let building = Building::new();
+    building.run_over_episodes("run");
+    houses(&building);
+    let said = |run: &str| {
+        building.wayword(&["export", "--run", run, "--style", "r2r", "--format", "r2r", "--out", "out.json"]).err
+    };
+    assert_eq!(said("run").matches("terms of the scenes of platform matterport").count(), 1);
+    assert!(!said("a").contains("terms of the scenes"));
 }
 
 #[test]

@@ -157,9 +157,11 @@ impl Hub {
     ) -> Result<ModelFolder, LocalError> {
         let identity = known.map(|commit| commit.as_str().to_owned());
         let folder = repo.snapshot(known.map_or(model.revision.as_str(), Commit::as_str));
+        let is_all = needs.flags().is_empty();
+        let (others, them) = if is_all { (" and the others of the model", "them") } else { ("", "it") };
         let hint = |file: &str| {
             format!(
-                "unset WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE and run `wayword models fetch {}{name}`; without a network, download this file ({}) and the others of the model elsewhere, and put them there",
+                "unset WAYWORD_OFFLINE, HF_HUB_OFFLINE and TRANSFORMERS_OFFLINE and run `wayword models fetch {}{name}`; without a network, download this file ({}){others} elsewhere, and put {them} there",
                 needs.flags(),
                 self.client.address(model, &model.revision, file)
             )

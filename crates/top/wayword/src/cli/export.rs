@@ -79,7 +79,7 @@ Examples:
   wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
   wayword export --run runs/a --run runs/b --format wayword --val-share 0.1 --out merged.jsonl
   wayword export --run runs/val_seen --style r2r --format duet --tokenizer hf/google-bert/bert-base-uncased --out annotations
-  wayword export --run runs/houses --format hf --out houses      (a folder that Python's datasets reads)
+  wayword export --run runs/houses --format hf --out published      (a folder that Python's datasets reads)
   wayword export --run runs/houses --format parquet --out houses.parquet
   wayword export --run runs/val_seen --style r2r --highlight doubts
   wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]

@@ -26,6 +26,7 @@ struct Encoded {
 
 pub(super) fn write(args: &Export, out: &Path, records: &[Record], output: &Output) -> Result<(), Error> {
     items::refuse_without_poses(ExportFormat::Duet, records)?;
+    refuse_without_viewpoints(records)?;
     let splits = splits::of_records(args, records)?;
     let dataset = args.dataset.unwrap_or_else(|| usual(records));
     let Encoded { is_xlm, ids } = encoded(args.tokenizer.as_deref(), records, output)?;
@@ -47,6 +48,17 @@ pub(super) fn write(args: &Export, out: &Path, records: &[Record], output: &Outp
     tell_terms(records, output);
     tell_written(out, files, &splits, output);
     Ok(())
+}
+
+/// Refuses paths over open ground, because these agents walk a viewpoint graph.
+fn refuse_without_viewpoints(records: &[Record]) -> Result<(), Error> {
+    let is_blind = |record: &&Record| record.path.frames.iter().any(|frame| frame.viewpoint.is_none());
+    let Some(record) = records.iter().find(is_blind) else { return Ok(()) };
+    let problem = format!(
+        "path {} of platform {} names no viewpoints, and these agents need them",
+        record.path.id, record.platform
+    );
+    Err(Error::usage(problem, "use --format vlnce, wayword, parquet or hf"))
 }
 
 /// Writes the records of a split, and gives the files.

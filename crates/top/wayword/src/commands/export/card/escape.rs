@@ -4,7 +4,7 @@
 use minijinja::{Error, Output, State, Value, value::ValueKind};
 
 /// Marks that mean something in Markdown or HTML.
-const MARKS: &str = "\\`*_{}[]<>()#+-.!|&~=:\"'$^@";
+const MARKS: &str = "\\`*_{}[]<>()#.!|&~:$^@";
 
 /// A text that reads as it is in Markdown, within one line.
 fn in_markdown(text: &str) -> String {

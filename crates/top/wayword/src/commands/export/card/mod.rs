@@ -5,6 +5,7 @@ mod escape;
 
 use crate::{
     cli::Export,
+    count::count,
     error::Error,
     run::{Rejected, file, read_lines},
     terms,
@@ -123,6 +124,7 @@ fn drawn(card: &Card) -> Result<String, minijinja::Error> {
     templates.set_undefined_behavior(UndefinedBehavior::Strict);
     templates.set_keep_trailing_newline(true);
     templates.set_formatter(escape::write);
+    templates.add_function("count", |number: u64, of: &str| count(number, of));
     templates.add_filter("yaml", escape::yaml);
     templates.add_filter("plain", escape::plain);
     templates.add_filter("join", escape::join);
