@@ -99,7 +99,7 @@ def test_ctrl_c_inside_a_call_is_raised_and_the_same_call_goes_on(tmp_path):
         "    if done >= 1 and not hit:\n"
         "        hit.append(1); os.kill(os.getpid(), signal.SIGINT)\n"
         "hit = []\n"
-        "run = lambda: wayword.generate(sys.argv[1], paths=4, seed=5, progress=show)\n"
+        "run = lambda: wayword.generate(sys.argv[1], paths=4, seed=5, style='r2r', progress=show)\n"
         "try:\n"
         "    run()\n"
         "except KeyboardInterrupt:\n"

@@ -28,7 +28,8 @@ def test_a_world_of_this_process_is_written_about(tmp_path):
 
 
 def test_the_same_world_as_a_child_gives_the_same_texts(tmp_path, cli):
-    here = wayword.generate(tmp_path / "here", platform=Hall(), paths=3, hops=(2, 6), metres=(3, 14), seed=2)
+    paths = dict(paths=3, hops=(2, 6), metres=(3, 14), seed=2, style="r2r")
+    here = wayword.generate(tmp_path / "here", platform=Hall(), **paths)
     script = tmp_path / "world.py"
     folders = [str(pathlib.Path(__file__).parent), str(pathlib.Path(__file__).parents[1])]
     script.write_text(
@@ -42,9 +43,7 @@ def test_the_same_world_as_a_child_gives_the_same_texts(tmp_path, cli):
     assert done.returncode in (0, 3), done.stderr
     child = wayword.load_run(tmp_path / "child")
     assert [text.text for text in child] == [text.text for text in here]
-    inside = wayword.generate(
-        tmp_path / "third", platform="process", data=world, paths=3, hops=(2, 6), metres=(3, 14), seed=2
-    )
+    inside = wayword.generate(tmp_path / "third", platform="process", data=world, **paths)
     assert [text.text for text in inside] == [text.text for text in here]
 
 
@@ -55,7 +54,10 @@ def test_a_world_that_fails_is_told_and_the_next_call_works(tmp_path):
         wayword.generate(tmp_path / "none", platform=Hall(), scan="attic", paths=1)
     with pytest.raises(errors.InputError, match="Hall"):
         wayword.generate(tmp_path / "gone", platform="process", data="python:Hall", paths=1)
-    assert len(wayword.generate(tmp_path / "well", platform=Hall(), paths=1, hops=(2, 6), metres=(3, 14))) == 1
+    assert (
+        len(wayword.generate(tmp_path / "well", platform=Hall(), paths=1, hops=(2, 6), metres=(3, 14), style="r2r"))
+        == 1
+    )
 
 
 def test_a_world_takes_no_data(tmp_path):
@@ -67,7 +69,7 @@ def test_calls_of_several_threads_wait_for_each_other(tmp_path):
     made = {}
 
     def make(seed):
-        paths = dict(paths=1, hops=(2, 6), metres=(3, 14))
+        paths = dict(paths=1, hops=(2, 6), metres=(3, 14), style="r2r")
         made[seed] = wayword.generate(tmp_path / str(seed), platform=Hall(), seed=seed, progress=False, **paths)
 
     threads = [threading.Thread(target=make, args=(seed,)) for seed in (1, 2, 3)]

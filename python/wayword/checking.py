@@ -14,7 +14,7 @@ from typing import Any
 from . import errors
 from ._call import PathLike, Progress, command, file_name, flags, opened
 from .platform import Platform
-from .run import Finding, Run
+from .run import Finding, Run, findings_of
 
 Texts = Run | PathLike | Sequence[Mapping[str, Any]]
 """Texts with their paths: a run, a dataset file, or items of R2R's or REVERIE's format."""

@@ -312,7 +312,7 @@ _T = TypeVar("_T")
 
 
 def _read(file: pathlib.Path, of: Callable[[dict[str, Any]], _T], form: str | None = None) -> list[_T]:
-    """What each line of a file holds. A last line that is not whole, of a run that was killed or goes on, is left out."""
+    """What each line of a file holds. A last line that is not whole, of a run that was killed, is left out."""
     if not file.exists():
         return []
     try:
