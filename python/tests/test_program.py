@@ -153,3 +153,25 @@ def test_the_interpreter_ends_while_another_thread_is_inside_a_call(tmp_path):
     )
     done = subprocess.run([sys.executable, script, tmp_path / "run"], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (0, "ends\n"), done.stderr
+
+
+def test_a_world_of_this_process_that_hangs_is_left_by_ctrl_c(tmp_path):
+    script = tmp_path / "hangs.py"
+    folders = [str(HERE)]
+    script.write_text(
+        f"import sys; sys.path[:0] = {folders!r}\n"
+        "import os, signal, threading, time, wayword\n"
+        "from halls import Hall\n"
+        "class Hangs(Hall):\n"
+        "    def scenes(self):\n"
+        "        time.sleep(100)\n"
+        "threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+        "begin = time.time()\n"
+        "try:\n"
+        "    wayword.Follower(platform=Hangs()).scenes\n"
+        "except KeyboardInterrupt:\n"
+        "    print('raised', time.time() - begin < 30)\n"
+        "print(wayword.Follower(platform=Hall()).scenes)\n"
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    assert done.stdout.splitlines() == ["raised True", "['hall']"], done.stdout + done.stderr
