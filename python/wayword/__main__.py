@@ -11,7 +11,8 @@ def main() -> int:
 
     # Wayword handles Ctrl-C itself. Python's own handler would raise KeyboardInterrupt after the end.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return _wayword.main(["wayword", *sys.argv[1:]], GUARDIAN)
+    _wayword.guarded_by(*GUARDIAN)
+    return _wayword.main(["wayword", *sys.argv[1:]])
 
 
 if __name__ == "__main__":

@@ -60,9 +60,10 @@ def command(*arguments: object, progress: Progress = None) -> Any:
     from . import _wayword
     from .notebook import shown
 
+    _wayword.guarded_by(*GUARDIAN)
     with _alone(), shown(progress) as show:
         typed = [os.fspath(one) if isinstance(one, os.PathLike) else str(one) for one in arguments]
-        code, told = _wayword.call(typed, GUARDIAN, _Hears(show))
+        code, told = _wayword.call(typed, _Hears(show))
     result = json.loads(told) if told else None
     if code in _ENDS:
         reason = (result or {}).get("stopped") or (result or {}).get("reason") or "the command stopped before its end"
@@ -123,6 +124,9 @@ def opened(
 ) -> contextlib.AbstractContextManager[dict[str, Any]]:
     """The flags that name a platform. A world of this process is known while the context lasts; where a run keeps its
     name (`is_kept`), it is known by its class, and worlds of one class take turns."""
+    from . import _wayword
+
+    _wayword.guarded_by(*GUARDIAN)
     if platform is None or isinstance(platform, str):
         named = {"platform": platform, "data": None if data is None else os.fspath(data), "at": at, "island": island}
         return contextlib.nullcontext(named)

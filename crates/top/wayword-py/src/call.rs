@@ -56,21 +56,14 @@ impl Drop for Turn {
 
 /// Runs the program with its name and arguments. Returns the exit code.
 #[pyfunction]
-pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>, guardian: (OsString, Vec<OsString>)) -> u8 {
-    say_how_to_start(guardian);
+pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| wayword::main(arguments))
 }
 
 /// Runs a command inside the interpreter. `arguments` begin with the name of the command. `hears` has the methods `say(text)`
 /// and `progress(done, total, text)`. Returns the exit code and the result as JSON.
 #[pyfunction]
-pub(crate) fn call(
-    py: Python<'_>,
-    arguments: Vec<OsString>,
-    guardian: (OsString, Vec<OsString>),
-    hears: Py<PyAny>,
-) -> PyResult<(u8, String)> {
-    say_how_to_start(guardian);
+pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -> PyResult<(u8, String)> {
     let name = arguments.first().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let typed = std::iter::once(OsString::from("wayword")).chain(arguments);
     let cli = Cli::try_parse_from(typed).map_err(|told| raised_of(py, "input", in_parts(&name, &told.to_string())))?;
@@ -88,9 +81,10 @@ fn in_parts(command: &str, told: &str) -> (String, Option<String>, Option<String
     (what.trim().to_owned(), None, Some(format!("arguments are the flags of `wayword {command} --help`")))
 }
 
-/// Children of this process are guarded by the interpreter, which this program is a module of.
-fn say_how_to_start((program, arguments): (OsString, Vec<OsString>)) {
-    process::this_program_is(process::Guardian { program: program.into(), arguments });
+/// Says what guards the children of this process: a program with arguments, which starts the interpreter with this module.
+#[pyfunction]
+pub(crate) fn guarded_by(program: PathBuf, arguments: Vec<OsString>) {
+    process::this_program_is(process::Guardian { program, arguments });
 }
 
 /// What a command said so far.

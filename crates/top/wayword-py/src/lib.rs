@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 mod _wayword {
     #[pymodule_export]
     use crate::{
-        call::{call, finish, main, settings},
+        call::{call, finish, guarded_by, main, settings},
         follow::Map,
         judge::{Judge, Scores},
         world::{forget_world, put_world},
