@@ -159,6 +159,10 @@ def test_lines_of_other_versions_and_broken_lines_are_refused_with_their_place(h
         wayword.load_run(copy)
     assert "version that wrote it" in told.value.hint
     (copy / "config.toml").write_text(config)
+    # Other separators of lines may stand in a text.
+    record = {**json.loads(lines[1]), "text": "Turn left.\u2028Stop.\x85", "mentions": [], "findings": []}
+    (copy / "instructions.jsonl").write_text(lines[0] + json.dumps(record, ensure_ascii=False) + "\n")
+    assert wayword.load_run(copy)[1].text == record["text"]
     # A run that is being written ends in half a line.
     (copy / "instructions.jsonl").write_text(lines[0] + lines[1][:40])
     assert len(wayword.load_run(copy)) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import pathlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -322,7 +323,8 @@ def _read(file: pathlib.Path, of: Callable[[dict[str, Any]], _T], form: str | No
     except OSError as error:
         raise errors.FileError(f"it cannot be read: {error}", str(file)) from error
     found = []
-    for number, line in enumerate(text.splitlines(keepends=True), 1):
+    # Unlike `splitlines` this ends lines at line feeds alone: texts may have other separators.
+    for number, line in enumerate(io.StringIO(text), 1):
         place = f"{file}: line {number}"
         try:
             value = json.loads(line)
