@@ -134,11 +134,16 @@ def test_a_call_whose_child_hangs_is_ended_by_the_second_ctrl_c(tmp_path):
     assert wait_for(lambda: sleepers() == [])
 
 
+def ran_in_hall(folder, text):
+    """Runs a script that can import the world of the tests; its argument is a folder for a run."""
+    script = folder / "script.py"
+    script.write_text(f"import sys; sys.path[:0] = {[str(HERE)]!r}\n" + text)
+    return subprocess.run([sys.executable, script, folder / "run"], capture_output=True, text=True, timeout=120)
+
+
 def test_the_interpreter_ends_while_another_thread_is_inside_a_call(tmp_path):
-    script = tmp_path / "ends.py"
-    folders = [str(HERE)]
-    script.write_text(
-        f"import sys; sys.path[:0] = {folders!r}\n"
+    done = ran_in_hall(
+        tmp_path,
         "import threading, time, wayword\n"
         "from halls import Hall\n"
         "class Slow(Hall):\n"
@@ -149,17 +154,14 @@ def test_the_interpreter_ends_while_another_thread_is_inside_a_call(tmp_path):
         "make = lambda: wayword.generate(sys.argv[1], platform=Slow(), progress=False, **paths)\n"
         "threading.Thread(target=make, daemon=True).start()\n"
         "time.sleep(1.5)\n"
-        "print('ends')\n"
+        "print('ends')\n",
     )
-    done = subprocess.run([sys.executable, script, tmp_path / "run"], capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (0, "ends\n"), done.stderr
 
 
 def test_a_world_of_this_process_that_hangs_is_left_by_ctrl_c(tmp_path):
-    script = tmp_path / "hangs.py"
-    folders = [str(HERE)]
-    script.write_text(
-        f"import sys; sys.path[:0] = {folders!r}\n"
+    done = ran_in_hall(
+        tmp_path,
         "import os, signal, threading, time, wayword\n"
         "from halls import Hall\n"
         "class Hangs(Hall):\n"
@@ -171,7 +173,6 @@ def test_a_world_of_this_process_that_hangs_is_left_by_ctrl_c(tmp_path):
         "    wayword.Follower(platform=Hangs()).scenes\n"
         "except KeyboardInterrupt:\n"
         "    print('raised', time.time() - begin < 30)\n"
-        "print(wayword.Follower(platform=Hall()).scenes)\n"
+        "print(wayword.Follower(platform=Hall()).scenes)\n",
     )
-    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
     assert done.stdout.splitlines() == ["raised True", "['hall']"], done.stdout + done.stderr
