@@ -20,7 +20,7 @@ def done(ran):
 def run(cli, tmp_path):
     """A run over two paths in generated houses, with texts of both styles."""
     folder = tmp_path / "run"
-    scenes = ["--scan", "house-3", "--scan", "house-4"]
+    scenes = ["--scan", "house2-3", "--scan", "house2-4"]
     done(cli("generate", "--paths", 2, *scenes, "--style", "r2r", "--style", "reverie", "--out", folder))
     return folder
 

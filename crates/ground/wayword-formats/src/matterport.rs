@@ -58,7 +58,7 @@ pub(crate) fn add_extra(fields: &mut Map<String, Value>, episode: &Episode) {
 pub(crate) const PATH_NAME: &str = "path_name";
 
 /// The numbers of a file's paths. The field's evaluators read a path's name back with `int()`. So a path whose name is
-/// not a number (`house-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
+/// not a number (`house2-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
 pub(crate) struct PathNumbers {
     numbers: Numbers,
     given: BTreeMap<String, u64>,

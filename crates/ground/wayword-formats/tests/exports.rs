@@ -45,7 +45,7 @@ fn episode(id: &str, object: Option<&str>, texts: &[&str]) -> Episode {
 fn episodes() -> Vec<Episode> {
     let mut plain = episode("0", Some("66"), &["Turn left and walk to the plant.", "Go on, then stop by the plant."]);
     plain.extra.insert("provenance".into(), json!({"writer": "rules"}));
-    vec![plain, episode("house-3-17", Some("12"), &["Walk on."]), episode("house-3-18", None, &["Stop."])]
+    vec![plain, episode("house2-3-17", Some("12"), &["Walk on."]), episode("house2-3-18", None, &["Stop."])]
 }
 
 fn write(format: Format, file: &Path, episodes: &[Episode]) {
@@ -122,7 +122,7 @@ fn a_path_whose_name_is_no_number_gets_one_and_keeps_its_name() {
     assert_eq!(items[0]["provenance"], json!({"writer": "rules"}));
     assert_eq!(
         (&items[1]["id"], &items[1]["path_id"], &items[1]["path_name"]),
-        (&json!("1_12"), &json!(1), &json!("house-3-17"))
+        (&json!("1_12"), &json!(1), &json!("house2-3-17"))
     );
     assert_eq!((&items[2]["id"], items[2].get("objId")), (&json!("2"), None));
 }

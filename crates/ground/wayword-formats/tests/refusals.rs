@@ -44,7 +44,7 @@ fn a_refusal_names_file_item_and_field() {
     );
     assert_eq!(
         refusal_of(Format::Wayword, "/path/frames/1/pose/heading", Value::Null),
-        "data.json: line 2 (id house-1): field \"path.frames[1]\": invalid type: null, expected f64; docs/FORMATS.md says \
+        "data.json: line 2 (id house2-1): field \"path.frames[1]\": invalid type: null, expected f64; docs/FORMATS.md says \
          what it should be"
     );
 }

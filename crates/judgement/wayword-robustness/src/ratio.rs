@@ -200,7 +200,7 @@ mod tests {
 
     fn paths(count: usize, changed: impl Fn(usize) -> f64) -> Vec<OfPath> {
         let path = |at: usize| OfPath {
-            scene: format!("house-{}", at % 10),
+            scene: format!("house2-{}", at % 10),
             changed: turns(changed(at)),
             again: turns(0.8),
             other: turns(0.2 + 0.1 * (at % 2) as f64),

@@ -51,7 +51,7 @@ fn labels(criterion: &mut Criterion) {
 
 fn house(criterion: &mut Criterion) {
     let asked = || Asked {
-        walks: Walks { paths: Some(1), scan: Some(vec!["house-3".into()]), ..Walks::default() },
+        walks: Walks { paths: Some(1), scan: Some(vec!["house2-3".into()]), ..Walks::default() },
         draw: Draw { seed: Some(3), ..Draw::default() },
         ..Asked::default()
     };

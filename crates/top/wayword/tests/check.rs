@@ -369,7 +369,7 @@ fn without_evidence_a_run_writes_what_it_can_and_claims_nothing() {
 fn a_wrong_colour_is_caught_in_a_house() {
     let building = Building::new();
     let ran = building
-        .wayword(&["generate", "--paths", "1", "--scan", "house-3", "--seed", "3", "--style", "r2r", "--out", "run"]);
+        .wayword(&["generate", "--paths", "1", "--scan", "house2-3", "--seed", "3", "--style", "r2r", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let record = building.records("run").remove(0);
     let platform = platforms::open(&settings_of(&building.path("run")).unwrap()).unwrap();

@@ -187,7 +187,7 @@ fn what_makes_no_sense_is_refused_and_leaves_no_folder() {
 fn generated_houses_can_be_walked_by_their_own_instructions() {
     let building = Building::new();
     let made =
-        building.wayword(&["generate", "--paths", "2", "--style", "reverie", "--scan", "house-1", "--out", "houses"]);
+        building.wayword(&["generate", "--paths", "2", "--style", "reverie", "--scan", "house2-1", "--out", "houses"]);
     assert_eq!(made.code, Some(0), "{made:?}");
     let ran = building.wayword(&[
         "compare",

@@ -292,7 +292,7 @@ fn generated_houses_are_searched_too() {
     building.write("two.txt", "lamp\nbed\n");
     figures(&building, "all.toml", &owl, 0.0);
     let run = |out: &str| {
-        let args = ["generate", "--platform", "house", "--paths", "1", "--scan", "house-1", "--style", "r2r"];
+        let args = ["generate", "--platform", "house", "--paths", "1", "--scan", "house2-1", "--style", "r2r"];
         let more = ["--ledger", "ledger.db", "--json", "--detector", &owl, "--proposals", "two.txt", "--out", out];
         let how = ["--evidence", "captions,detector", "--detector-figures", "all.toml"];
         let ran = wayword(&building, &[&args[..], &more, &how].concat());
@@ -531,7 +531,7 @@ fn glip_nav_walks_by_the_boxes_of_glip() {
 fn glip_nav_walks_through_generated_houses() {
     let building = Building::new();
     let glip = glip();
-    let args = ["generate", "--paths", "1", "--style", "reverie", "--scan", "house-1", "--out", "houses"];
+    let args = ["generate", "--paths", "1", "--style", "reverie", "--scan", "house2-1", "--out", "houses"];
     assert_eq!(building.wayword(&args).code, Some(0));
     let args = ["compare", "--episodes", "houses/instructions.jsonl", "--grounder", &glip, "--agents", "glip-nav"];
     let more = ["--swaps", "none", "--resamples", "200", "--ledger", "ledger.db", "--out", "walked"];

@@ -7,7 +7,7 @@ mod common;
 use common::Building;
 
 fn houses(building: &Building) {
-    for (out, scene) in [("a", "house-3"), ("b", "house-4")] {
+    for (out, scene) in [("a", "house2-3"), ("b", "house2-4")] {
         let arguments = ["generate", "--paths", "1", "--metres", "5..7", "--scan", scene, "--seed"];
         let ran = building.wayword(&[&arguments[..], &[&scene[6..], "--out", out]].concat());
         assert_eq!(ran.code, Some(0), "{ran:?}");

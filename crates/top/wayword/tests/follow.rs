@@ -115,7 +115,7 @@ fn a_text_that_is_not_understood_is_not_followed() {
 #[test]
 fn where_only_the_path_is_known_the_route_is_unverified_with_the_reason() {
     let building = Building::new();
-    let house = ["--paths", "1", "--scan", "house-3", "--seed", "3", "--style", "r2r"];
+    let house = ["--paths", "1", "--scan", "house2-3", "--seed", "3", "--style", "r2r"];
     let ran = building.wayword(&[&["generate", "--out", "run", "--json"], &house[..]].concat());
     let summary = ran.json();
     assert_eq!((ran.code, &summary["passed"], &summary["unfollowed"]), (Some(0), &json!(1), &json!(1)), "{summary}");

@@ -18,7 +18,7 @@ use wayword_render::Mesh;
 
 /// A house saved as a scene of Habitat: its stage.
 fn house(building: &Building) -> PathBuf {
-    let saved = building.wayword(&["house", "--seed", "2", "--out", "scenes/own/house-2", "--json"]).json();
+    let saved = building.wayword(&["house", "--seed", "2", "--out", "scenes/own/house2-2", "--json"]).json();
     PathBuf::from(saved["stage"].as_str().unwrap())
 }
 
@@ -61,7 +61,7 @@ fn vlnce_has_every_corner_of_the_way_and_the_distance_over_the_navmesh() {
         // The paths are shortest ways themselves; heights of stairs and floors differ by centimetres.
         assert!((told_m - walked_m).abs() < 0.02 * told_m + 0.05, "{told_m} {walked_m}");
         assert_eq!(written["info"]["geodesic_distance_over"], "navmesh");
-        assert_eq!(written["scene_id"], "own/house-2/house-2.stage_config.json");
+        assert_eq!(written["scene_id"], "own/house2-2/house2-2.stage_config.json");
         assert_eq!(episode.scene, record.path.scene);
     }
     assert!(corners > 0, "no walk has a bend between two frames");
@@ -101,7 +101,7 @@ fn roof(building: &Building, stage: &Path) {
     let positions = vec![corner(low.x, low.y), corner(high.x, low.y), corner(high.x, high.y), corner(low.x, high.y)];
     let sheet = Mesh { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
     let mesh = bake(&Model { meshes: vec![sheet], ..Model::default() }, &NavMeshSettings::default()).unwrap();
-    std::fs::write(stage.with_file_name("house-2.navmesh"), mesh.to_bytes()).unwrap();
+    std::fs::write(stage.with_file_name("house2-2.navmesh"), mesh.to_bytes()).unwrap();
 }
 
 #[test]

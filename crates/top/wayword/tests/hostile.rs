@@ -303,7 +303,7 @@ fn damaged_records_are_checked_or_refused() {
 #[test]
 fn a_house_is_not_looked_at_from_nowhere() {
     let building = Building::new();
-    let ran = building.wayword(&["generate", "--paths", "1", "--metres", "5..6", "--scan", "house-3", "--out", "run"]);
+    let ran = building.wayword(&["generate", "--paths", "1", "--metres", "5..6", "--scan", "house2-3", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let mut line: Value = serde_json::from_str(&first_line(&building.path("run/instructions.jsonl"))).unwrap();
     line["path"]["frames"].as_array_mut().unwrap().truncate(1);
@@ -317,10 +317,10 @@ fn a_house_is_not_looked_at_from_nowhere() {
         ("/path/frames/0/pose/position", json!([0.0, 0.0, 1e30])),
         ("/path/frames/0/pose/heading", json!(1e308)),
         ("/path/frames/0/pose/elevation_rad", json!(1e308)),
-        ("/path/scene", json!("house-18446744073709551616")),
-        ("/path/scene", json!("house--1")),
+        ("/path/scene", json!("house2-18446744073709551616")),
+        ("/path/scene", json!("house2--1")),
         ("/path/scene", json!("castle-3")),
-        ("/path/scene", json!("house-03")),
+        ("/path/scene", json!("house2-03")),
     ] {
         let mut changed = line.clone();
         *changed.pointer_mut(pointer).unwrap() = value.clone();

@@ -21,7 +21,7 @@ fn with_one_storey(seed: u64) -> u64 {
 
 /// The texts of a run of two paths through a house, as another platform shows the same house.
 fn elsewhere(seed: u64, platform: &str, name: &str) -> (Building, Ran) {
-    let (building, scene) = (Building::new(), format!("house-{seed}"));
+    let (building, scene) = (Building::new(), format!("house2-{seed}"));
     let ran = building.wayword(&["generate", "--scan", &scene, "--paths", "2", "--style", "r2r", "--out", "run"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
     let (change, called) = (format!("platform={platform}"), format!("{scene}={name}"));

@@ -177,7 +177,7 @@ fn houses() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     wayword(
         folder.path(),
-        &["generate", "--paths", "3", "--scan", "house-1", "--style", "r2r", "--seed", "3", "--out", "run"],
+        &["generate", "--paths", "3", "--scan", "house2-1", "--style", "r2r", "--seed", "3", "--out", "run"],
     );
     folder
 }

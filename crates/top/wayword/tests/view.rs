@@ -12,7 +12,7 @@ use wayword_core::Platform;
 use wayword_house::HousePlatform;
 
 /// A house with two storeys.
-const TALL: &str = "house-3";
+const TALL: &str = "house2-3";
 
 fn view(building: &Building, args: &[&str]) -> Value {
     let ran = building.wayword(&[&["view"], args, &["--json"]].concat());

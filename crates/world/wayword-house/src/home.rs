@@ -7,6 +7,7 @@ use super::{
     labels::labels,
     layout::{Layout, lay_out},
     model::{House, Opening},
+    names::{old_seed_of, scene_name, seed_of},
     scene::HouseScene,
 };
 use std::{
@@ -47,7 +48,7 @@ pub(super) struct Home {
 impl Home {
     /// Builds the house that a scene names.
     pub(super) fn build(scene: &SceneId) -> Result<Self, PlatformError> {
-        let house = generate(seed_of(scene).ok_or_else(|| unknown(scene.as_str()))?);
+        let house = generate(seed_of(scene.as_str()).ok_or_else(|| unknown(scene.as_str()))?);
         let ground = Ground::of(&house);
         let graph =
             viewpoint_graph(&house, &ground).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })?;
@@ -159,17 +160,18 @@ impl Home {
     }
 }
 
-/// The seed in a scene's name, which must be written exactly as [`HousePlatform::scene_of`] writes it.
-fn seed_of(scene: &SceneId) -> Option<u64> {
-    let digits = scene.as_str().strip_prefix("house-")?;
-    let seed: u64 = digits.parse().ok()?;
-    (seed.to_string() == digits).then_some(seed)
-}
-
 pub(super) fn unknown(scene: &str) -> PlatformError {
-    PlatformError::UnknownScene {
-        scene: scene.to_owned(),
-        hint: "the scenes of platform house are named by their seed, as in house-7; for a scene of another platform, give --platform, as in --platform matterport"
-            .to_owned(),
-    }
+    let hint = match old_seed_of(scene) {
+        Some(seed) => format!(
+            "it was made by an earlier version of the generator, whose houses this program does not make; the house of \
+             seed {seed} is now {}, with other rooms",
+            scene_name(seed)
+        ),
+        None => {
+            "the scenes of platform house are named by their seed, as in house2-7; for a scene of another platform, \
+                 give --platform, as in --platform matterport"
+                .to_owned()
+        }
+    };
+    PlatformError::UnknownScene { scene: scene.to_owned(), hint }
 }

@@ -3,6 +3,7 @@
 use super::{
     graph::EYE_M,
     home::{Home, unknown},
+    names::scene_name,
     sample,
 };
 use std::{collections::BTreeSet, sync::Arc};
@@ -15,7 +16,7 @@ use wayword_render::flat;
 /// How many houses are kept in memory; each takes about 15 MB.
 const READY: usize = 6;
 
-/// Homes from seeds: scene `house-7` is the home of seed 7.
+/// Homes from seeds: scene `house2-7` is the home of seed 7.
 #[derive(Debug)]
 pub struct HousePlatform {
     options: HouseOptions,
@@ -25,7 +26,7 @@ pub struct HousePlatform {
 /// The options of the platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HouseOptions {
-    /// How many scenes it lists, from `house-0` on. The scene of any other seed can be asked for by its name.
+    /// How many scenes it lists, from `house2-0` on. The scene of any other seed can be asked for by its name.
     pub scenes: u64,
     /// Width of pictures, pixels.
     pub width_px: u32,
@@ -53,7 +54,7 @@ impl HousePlatform {
     /// # Errors
     /// Never: every seed has a house. There is an error type only because making an id can fail.
     pub fn scene_of(seed: u64) -> Result<SceneId, PlatformError> {
-        let name = format!("house-{seed}");
+        let name = scene_name(seed);
         SceneId::new(name.clone()).map_err(|_| unknown(&name))
     }
 

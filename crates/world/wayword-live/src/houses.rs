@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fmt};
 use thiserror::Error;
-use wayword_house::generate;
+use wayword_house::{generate, scene_name};
 
 /// Generated houses with one storey, in the order in which a stand-in shows them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum NotShown {
     },
 }
 
-/// A house, and the scene as which a stand-in shows it: `house-4=home_0`.
+/// A house, and the scene as which a stand-in shows it: `house2-4=home_0`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShownAs {
     /// Seed of the house.
@@ -41,7 +41,7 @@ pub struct ShownAs {
 
 impl fmt::Display for ShownAs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "house-{}={}", self.seed, self.scene)
+        write!(f, "{}={}", scene_name(self.seed), self.scene)
     }
 }
 
@@ -105,7 +105,7 @@ mod tests {
         let houses = Houses::of(seeds.clone()).unwrap();
         let scenes = |count: usize| (0..count).map(|n| format!("home_{n}")).collect();
         let shown: Vec<String> = houses.shown_as(scenes(3)).unwrap().iter().map(ToString::to_string).collect();
-        assert_eq!(shown, [format!("house-{}=home_0", seeds[0]), format!("house-{}=home_1", seeds[1])]);
+        assert_eq!(shown, [format!("house2-{}=home_0", seeds[0]), format!("house2-{}=home_1", seeds[1])]);
         assert_eq!(houses.shown_as(scenes(1)), Err(NotShown::TooMany { houses: 2, scenes: 1 }));
     }
 }

@@ -109,7 +109,7 @@ mod tests {
         assert_eq!(of("00799-kfPV7w3FaU5"), Some(OfficialSplit::Train));
         assert_eq!(of("00800-TEEsavR23oF"), Some(OfficialSplit::Val));
         assert_eq!(of("00900-TEEsavR23oF"), Some(OfficialSplit::Test));
-        for other in ["house-7", "00800", "800-TEEsavR23oF", "01000-TEEsavR23oF", "00800-short", "+0800-TEEsavR23oF"] {
+        for other in ["house2-7", "00800", "800-TEEsavR23oF", "01000-TEEsavR23oF", "00800-short", "+0800-TEEsavR23oF"] {
             assert!(!of(other).is_some_and(OfficialSplit::is_held_out), "{other}");
         }
     }

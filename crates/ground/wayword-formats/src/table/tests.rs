@@ -8,7 +8,7 @@ fn record(number: usize) -> Value {
     let frame = |viewpoint: &str, y: f64| json!({"pose": {"position": [0.5, y, 1.5], "heading": 0.25, "elevation_rad": 0.0}, "viewpoint": viewpoint});
     json!({
         "format": "wayword/1", "platform": "house",
-        "path": {"id": format!("p{number}"), "scene": "house-1", "frames": [frame("hall", 1.0), frame("door", 3.0)],
+        "path": {"id": format!("p{number}"), "scene": "house2-1", "frames": [frame("hall", 1.0), frame("door", 3.0)],
             "target": {"object": "7", "name": "plant"}},
         "text": format!("Walk to door {number}."), "style": "r2r", "mentions": [], "verdict": "unverified",
         "findings": [{"check": "turns", "verdict": "pass"}, {"check": "route", "verdict": "unverified", "reason": "no map"}],

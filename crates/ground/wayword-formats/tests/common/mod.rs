@@ -38,7 +38,7 @@ fn item(format: Format, n: u64) -> Value {
         }),
         Format::Wayword => json!({
             "format": "wayword/1", "platform": "house", "split": "train",
-            "path": {"id": format!("house-{n}"), "scene": "house1", "frames": [
+            "path": {"id": format!("house2-{n}"), "scene": "house1", "frames": [
                 {"pose": {"position": [0.0, 0.0, 1.5], "heading": 0.0, "elevation_rad": 0.0}, "viewpoint": "hall", "level": 1},
                 {"pose": {"position": [0.0, 2.0, 1.5], "heading": 0.0, "elevation_rad": 0.0}, "viewpoint": "door", "level": 1},
             ]},

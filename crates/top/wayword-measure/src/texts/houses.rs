@@ -14,7 +14,7 @@ use std::{
 use wayword::{error::Error, output::Output, platforms, run::file, settings::Asked};
 use wayword_core::{DVec3, Platform};
 use wayword_formats::jsonl::{self, Record};
-use wayword_house::{EYE_M, HouseScene, Object, generate};
+use wayword_house::{EYE_M, HouseScene, Object, generate, seed_of};
 use wayword_language::lexicon::{agree, normal, same_room};
 use wayword_world::labels_around;
 
@@ -69,10 +69,7 @@ pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
     let mut houses: BTreeMap<u64, HouseScene> = BTreeMap::new();
     for run in &flags.runs {
         for record in jsonl::read(&run.join(file::INSTRUCTIONS))? {
-            let Some(seed) = record.path.scene.as_str().strip_prefix("house-").and_then(|seed| seed.parse().ok())
-            else {
-                continue;
-            };
+            let Some(seed) = seed_of(record.path.scene.as_str()) else { continue };
             let home = match houses.entry(seed) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {

@@ -206,7 +206,7 @@ pub struct House {
     /// Seed of the house.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Folder for house-SEED.glb, its navigation data and the files that Habitat needs.
+    /// Folder for house2-SEED.glb, its navigation data and the files that Habitat needs.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

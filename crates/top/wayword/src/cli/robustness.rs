@@ -18,7 +18,7 @@ Examples:
   wayword robustness --run runs/houses --eye guesses-sides --change mirror --out runs/guesses
   wayword robustness --run runs/houses --change platform=habitat --out runs/elsewhere
       The same poses on another platform: the houses are saved as glTF and read as Habitat reads them.
-  wayword robustness --run runs/houses --change platform=virtualhome@http://127.0.0.1:8080 --scene-name house-3=home_2 --out runs/elsewhere
+  wayword robustness --run runs/houses --change platform=virtualhome@http://127.0.0.1:8080 --scene-name house2-3=home_2 --out runs/elsewhere
   wayword robustness --compared runs/table
       Mean and spread of each agent's success over the sets of a comparison, and where it varies.
 

@@ -50,7 +50,7 @@ pub struct Walk {
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
-  wayword view panorama --scan house-7 --out living.png
+  wayword view panorama --scan house2-7 --out living.png
   wayword view panorama --platform habitat --data house.glb --viewpoint v0003 --heading-deg 90 --out east.jpg
   wayword view panorama --platform matterport --data DATA --scan SCAN --seed 3 --out start.png
 
@@ -84,8 +84,8 @@ pub struct ViewPanorama {
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
-  wayword view path --scan house-7 --seed 3 --out frames/
-  wayword view path --scan house-7 --seed 3 --smooth 8 --out walk.mp4      (needs the feature full)
+  wayword view path --scan house2-7 --seed 3 --out frames/
+  wayword view path --scan house2-7 --seed 3 --smooth 8 --out walk.mp4      (needs the feature full)
   wayword view path --platform habitat --data house.glb --metres 5..10 --smooth 8 --width 320 --out walk.gif
   wayword view path --episodes runs/houses/instructions.jsonl --item random-0-4 --out walk.gif
 
@@ -117,8 +117,8 @@ pub struct ViewPath {
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
-  wayword view map --scan house-7 --out ground.svg
-  wayword view map --scan house-7 --level 2 --seed 3 --out upstairs.png
+  wayword view map --scan house2-7 --out ground.svg
+  wayword view map --scan house2-7 --level 2 --seed 3 --out upstairs.png
   wayword view map --platform matterport --data DATA --episodes REVERIE_val_seen.json --item 4634_215 --out path.svg
 
 A path is drawn if one is asked for: with --seed, --hops, --metres or --episodes. The background shows the storey from above if

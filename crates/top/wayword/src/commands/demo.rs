@@ -14,17 +14,18 @@ use serde::Serialize;
 use std::{fmt, path::PathBuf};
 use wayword_core::{Climb, Move, Turn, Verdict};
 use wayword_formats::jsonl::{self, Record};
+use wayword_house::scene_name;
 
 /// The report of a demo shows its one path.
 const ITEMS: usize = 1;
 
 pub(super) fn run(args: &Demo, output: &Output) -> Result<Exit, Error> {
     let asked = Asked {
-        walks: Walks { scan: Some(vec![format!("house-{}", args.seed)]), paths: Some(1), ..Walks::default() },
+        walks: Walks { scan: Some(vec![scene_name(args.seed)]), paths: Some(1), ..Walks::default() },
         draw: Draw { seed: Some(args.seed), ..Draw::default() },
         ..Asked::default()
     };
-    output.say(format_args!("generating house-{} and a path through it ...", args.seed));
+    output.say(format_args!("generating {} and a path through it ...", scene_name(args.seed)));
     let summary = generate_into(&args.out, &asked.job()?, output)?;
     if let Some(reason) = &summary.stopped {
         output.say(format_args!("stopped before the end: {reason}"));

@@ -12,17 +12,19 @@ fn scenes_are_named_by_their_seed_and_by_nothing_else() {
     let platform = small();
     let scenes = platform.scenes().unwrap();
     assert_eq!(scenes.len(), 20);
-    assert!(scenes.is_sorted() && scenes.iter().any(|scene| scene.as_str() == "house-7"));
-    for bad in ["house-", "house-07", "house-x", "house--1", "attic-7", "house-99999999999999999999"] {
+    assert!(scenes.is_sorted() && scenes.iter().any(|scene| scene.as_str() == "house2-7"));
+    for bad in ["house2-", "house2-07", "house2-x", "house2--1", "attic-7", "house2-99999999999999999999"] {
         let error = platform.graph(&SceneId::new(bad).unwrap()).unwrap_err().to_string();
-        assert!(error.contains("house-7") && error.contains("--platform matterport"), "{error}");
+        assert!(error.contains("house2-7") && error.contains("--platform matterport"), "{error}");
     }
+    let error = platform.graph(&SceneId::new("house-3").unwrap()).unwrap_err().to_string();
+    assert!(error.contains("an earlier version") && error.contains("house2-3"), "{error}");
 }
 
 #[test]
 fn paths_keep_to_their_length_end_at_their_target_and_repeat() {
     let platform = small();
-    for scene in ["house-1", "house-2"] {
+    for scene in ["house2-1", "house2-2"] {
         let scene = SceneId::new(scene).unwrap();
         let request = PathRequest { hops: 1..=9, length_m: 4.0..=16.0 };
         for seed in 0..2 {
@@ -69,7 +71,7 @@ fn a_picture_that_cannot_be_drawn_is_not_called_a_missing_scene() {
     let first = graph.viewpoints().next().unwrap().clone();
     let frame = graph.walk(&[first], None).unwrap().remove(0);
     let error = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap_err();
-    assert!(error.to_string().starts_with("scene house-1 cannot be drawn: "), "{error}");
+    assert!(error.to_string().starts_with("scene house2-1 cannot be drawn: "), "{error}");
     assert_eq!(error.failure(), Failure::Broken);
 }
 
@@ -97,7 +99,7 @@ fn places_outside_the_house_are_refused() {
     for place in [DVec3::new(-50.0, 0.0, 1.5), DVec3::new(1.0, 1.0, 900.0), DVec3::NAN] {
         let frame = Frame { pose: Pose::level(place, Heading::NORTH), viewpoint: None, level: None };
         let error = platform.look(&scene, &frame, Gaze::quarter(Heading::NORTH)).unwrap_err().to_string();
-        assert!(error.contains("house-1"), "{error}");
+        assert!(error.contains("house2-1"), "{error}");
     }
 }
 

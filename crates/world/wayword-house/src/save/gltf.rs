@@ -1,7 +1,7 @@
 //! A house as binary glTF 2.0: one node for each object, unlit, with its light in `COLOR_0`.
 
 use super::{
-    super::{drawing, model::House, objects},
+    super::{drawing, model::House, names::scene_name, objects},
     SaveError,
     buffer::Buffer,
 };
@@ -40,7 +40,7 @@ pub fn glb(house: &House) -> Result<Vec<u8>, SaveError> {
         "asset": { "version": "2.0", "generator": "wayword" },
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
-        "scenes": [{ "name": format!("house-{}", house.seed), "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+        "scenes": [{ "name": scene_name(house.seed), "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
         "nodes": nodes,
         "meshes": meshes,
         "materials": materials,

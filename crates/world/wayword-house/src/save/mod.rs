@@ -6,7 +6,7 @@ mod gltf;
 mod navigation;
 mod semantic;
 
-use super::{graph::viewpoint_graph, ground::Ground, model::House};
+use super::{graph::viewpoint_graph, ground::Ground, model::House, names::scene_name};
 pub use buffer::gltf_from_wayword;
 pub use gltf::glb;
 pub use navigation::navigation;
@@ -51,13 +51,13 @@ pub enum SaveError {
 /// The files of a saved house.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Saved {
-    /// `house-SEED.glb`: its looks.
+    /// `house2-SEED.glb`: its looks.
     pub model: PathBuf,
-    /// `house-SEED.navigation.json`: rooms, objects, ground, viewpoint graph.
+    /// `house2-SEED.navigation.json`: rooms, objects, ground, viewpoint graph.
     pub navigation: PathBuf,
-    /// `house-SEED.stage_config.json`: names the other files for AI Habitat and for the platform `habitat`.
+    /// `house2-SEED.stage_config.json`: names the other files for AI Habitat and for the platform `habitat`.
     pub stage: PathBuf,
-    /// `house-SEED.semantic.glb` and `house-SEED.semantic.txt`: which object each surface belongs to.
+    /// `house2-SEED.semantic.glb` and `house2-SEED.semantic.txt`: which object each surface belongs to.
     pub semantics: [PathBuf; 2],
 }
 
@@ -68,7 +68,7 @@ pub struct Saved {
 pub fn save(house: &House, folder: &Path) -> Result<Saved, SaveError> {
     let ground = Ground::of(house);
     let graph = viewpoint_graph(house, &ground)?;
-    let name = format!("house-{}", house.seed);
+    let name = scene_name(house.seed);
     let write = |ending: &str, bytes: &[u8]| {
         let file = folder.join(format!("{name}.{ending}"));
         match std::fs::write(&file, bytes) {

@@ -57,7 +57,7 @@ fn line() -> Scene {
         panorama: format!("{at}.jpg"),
     };
     let places: BTreeMap<ViewpointId, Place> = (0..6).map(|at| (viewpoint(at), place(at))).collect();
-    Scene { scene: SceneId::new("house-1").unwrap(), places }
+    Scene { scene: SceneId::new("house2-1").unwrap(), places }
 }
 
 pub(super) fn add_route(data: &mut Data) -> u32 {
@@ -65,7 +65,7 @@ pub(super) fn add_route(data: &mut Data) -> u32 {
     data.routes.push(Route {
         id,
         name: format!("path-{id}"),
-        scene: SceneId::new("house-1").unwrap(),
+        scene: SceneId::new("house2-1").unwrap(),
         viewpoints: (0..5).map(viewpoint).collect(),
         start_heading: Heading::new(0.0).unwrap(),
         film: Vec::new(),

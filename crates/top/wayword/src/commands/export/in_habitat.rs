@@ -111,7 +111,7 @@ fn below_scenes(file: &Path, data: &Path) -> String {
 
 /// A generated house, which Habitat can show once it is saved.
 fn house(scene: &SceneId) -> InHabitat {
-    let seed = scene.as_str().strip_prefix("house-").unwrap_or_default();
+    let seed = scene.as_str().strip_prefix("house2-").unwrap_or_default();
     InHabitat {
         scene_id: Some(format!("house/{scene}/{scene}.glb")),
         scene_needs: Some(format!("save the house: wayword house --seed {seed} --out SCENES/house/{scene}")),

@@ -29,7 +29,7 @@ pub(super) fn of(typed: &[String]) -> Result<Names, Error> {
 fn add(names: &mut Names, text: &str) -> Result<(), Error> {
     let parts = text.split_once('=').filter(|(scene, name)| !scene.is_empty() && !name.is_empty());
     let Some((scene, name)) = parts else {
-        let hint = "write the run's scene and its name there, as in --scene-name house-3=home_2, or --scene-name @FILE for a file of such lines";
+        let hint = "write the run's scene and its name there, as in --scene-name house2-3=home_2, or --scene-name @FILE for a file of such lines";
         return Err(Error::usage(format!("--scene-name {text}: there is no SCENE=NAME"), hint));
     };
     if let Some((other, _)) = names.iter().find(|(_, names)| names.iter().any(|known| known == name)) {
@@ -53,12 +53,12 @@ mod tests {
     fn names_are_typed_or_come_from_a_file() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("names");
-        fs::write(&file, "house-0=home_0\n\nhouse-7=home_1\n").unwrap();
-        let typed = [format!("@{}", file.display()), "house-7=floorplan_1a".to_owned()];
+        fs::write(&file, "house2-0=home_0\n\nhouse2-7=home_1\n").unwrap();
+        let typed = [format!("@{}", file.display()), "house2-7=floorplan_1a".to_owned()];
         let names = of(&typed).unwrap();
-        assert_eq!(called(&names, "house-7"), ["home_1", "floorplan_1a", "house-7"]);
-        assert_eq!(called(&names, "house-0"), ["home_0", "house-0"]);
-        assert_eq!(called(&names, "house-9"), ["house-9"]);
+        assert_eq!(called(&names, "house2-7"), ["home_1", "floorplan_1a", "house2-7"]);
+        assert_eq!(called(&names, "house2-0"), ["home_0", "house2-0"]);
+        assert_eq!(called(&names, "house2-9"), ["house2-9"]);
         for wrong in [&["home_0"][..], &["=home_0"], &["a=b", "a=b"], &["a=c", "b=c"], &["@nowhere"]] {
             let wrong: Vec<String> = wrong.iter().map(|text| (*text).to_owned()).collect();
             assert!(of(&wrong).is_err(), "{wrong:?}");

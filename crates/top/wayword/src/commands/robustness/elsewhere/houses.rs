@@ -6,7 +6,7 @@ use std::{
     fs,
     path::{Path as FilePath, PathBuf},
 };
-use wayword_house::{generate, save};
+use wayword_house::{generate, save, seed_of};
 
 /// Saves each house of a run into a folder of its own, unless it is there. The folder that holds them.
 ///
@@ -19,8 +19,7 @@ pub(super) fn saved(base: &Base, folder: &FilePath) -> Result<PathBuf, Error> {
         if house.is_dir() {
             continue;
         }
-        let seed = scene.strip_prefix("house-").and_then(|seed| seed.parse().ok());
-        let seed = seed.ok_or_else(|| Error::usage(format!("scene {scene} is no generated house"), "name data"))?;
+        let seed = seed_of(scene).ok_or_else(|| Error::usage(format!("scene {scene} is no generated house"), "name data"))?;
         // A house that was half written when the program was stopped is written again.
         let unfinished = folder.join(format!(".{scene}"));
         let _ = fs::remove_dir_all(&unfinished);

@@ -67,7 +67,7 @@ impl Elsewhere {
                 let called = called.join(" or ");
                 let problem =
                     format!("--change platform={spec}: it has no scene {called} for {} of the run", path.scene);
-                let hint = "name data that has all scenes of the run, or give the name of each there, as in --scene-name house-3=home_2";
+                let hint = "name data that has all scenes of the run, or give the name of each there, as in --scene-name house2-3=home_2";
                 return Err(Error::usage(problem, hint));
             };
             scene_of.insert(path.scene.to_string(), scene.clone());
