@@ -7,6 +7,7 @@
 //! Architecture invariant: nothing here reads a file, a clock or a network, or depends on a particular model or
 //! platform.
 
+pub mod action;
 pub mod ambiguity;
 pub mod caption;
 pub mod contain;
@@ -36,6 +37,7 @@ pub mod survey;
 pub mod verdict;
 pub mod view;
 
+pub use action::{Action, NoAction};
 pub use ambiguity::Ambiguity;
 pub use caption::{
     Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Spot, Trouble, WayOut, Where, Witness,
