@@ -11,8 +11,9 @@ pub mod navmesh;
 pub mod platform;
 pub mod scene;
 mod semantics;
+pub mod walk;
 
 pub use fault::FileError;
-pub use ground::{Foothold, Ground, NoWay};
+pub use ground::{Foothold, Ground, NoWay, Stride};
 pub use navmesh::{NavMesh, NavMeshError, NavMeshSettings};
 pub use platform::{HabitatOptions, HabitatPlatform};

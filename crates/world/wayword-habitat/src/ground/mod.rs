@@ -16,13 +16,15 @@ mod polygon;
 mod portals;
 mod roadmap;
 mod sample;
+mod stride;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use frames::stops_along;
 pub use geodesic::NoWay;
 pub use locate::Foothold;
 pub use roadmap::viewpoint_graph;
+pub use stride::Stride;
 
 use crate::navmesh::{Behind, NavMesh};
 use maze::Maze;

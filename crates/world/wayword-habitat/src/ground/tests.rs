@@ -43,14 +43,14 @@ fn slab(x: [f32; 2], y: [f32; 2], z: f32) -> Vec<[f32; 3]> {
 }
 
 /// A floor of 3 x 3 squares of 1 m, without the middle one.
-fn ring() -> Vec<Vec<[f32; 3]>> {
+pub(crate) fn ring() -> Vec<Vec<[f32; 3]>> {
     let squares = (0..9).filter(|n| *n != 4).map(|n| ((n % 3) as f32, (n / 3) as f32));
     squares.map(|(x, y)| slab([x, x + 1.0], [y, y + 1.0], 0.0)).collect()
 }
 
 /// Two floors of 4 x 4 m above one another, made of strips, and a ramp beside them from the far end of the lower one to
 /// the near end of the upper one. The way up leads along the floor and back up the ramp, to a place above its start.
-fn two_storeys() -> Vec<Vec<[f32; 3]>> {
+pub(crate) fn two_storeys() -> Vec<Vec<[f32; 3]>> {
     let strip = |n: u8, z: f32| slab([0.0, 4.0], [f32::from(n), f32::from(n) + 1.0], z);
     let mut polygons: Vec<_> = (0..4).map(|n| strip(n, 0.0)).collect();
     polygons.extend((0..4).map(|n| strip(n, 3.0)));

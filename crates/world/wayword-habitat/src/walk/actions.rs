@@ -1,0 +1,132 @@
+//! What an agent can do, and where it is.
+
+use crate::ground::{Foothold, Ground, Stride};
+use wayword_core::{Action, DVec3, Heading};
+
+/// Shortest and longest step forward, metres.
+const FORWARD_M: std::ops::RangeInclusive<f64> = 0.01..=2.0;
+
+/// How far an agent steps and turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gait {
+    forward_m: f64,
+    turn_deg: f64,
+}
+
+/// Steps or turns that cannot be walked with.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoGait {
+    /// A step that is too short, too long, or no number.
+    #[error("a step of {0} m: it must be from 0.01 to 2 m long")]
+    Forward(f64),
+    /// A turn that does not lead round in whole turns.
+    #[error(
+        "a turn of {0} degrees: it must be at least 1 degree, and a whole number of turns must make 180 degrees, as with 15 or 30"
+    )]
+    Turn(f64),
+}
+
+impl Gait {
+    /// Steps of this length, and turns of this angle.
+    ///
+    /// # Errors
+    /// When the step is not from 0.01 to 2 m long, or a half turn is not a whole number of turns.
+    pub fn new(forward_m: f64, turn_deg: f64) -> Result<Self, NoGait> {
+        if !FORWARD_M.contains(&forward_m) {
+            return Err(NoGait::Forward(forward_m));
+        }
+        let turns = 180.0 / turn_deg;
+        if !(1.0..=180.0).contains(&turn_deg) || (turns - turns.round()).abs() > 1e-9 {
+            return Err(NoGait::Turn(turn_deg));
+        }
+        Ok(Self { forward_m, turn_deg })
+    }
+
+    /// Length of a step, metres.
+    #[must_use]
+    pub fn forward_m(self) -> f64 {
+        self.forward_m
+    }
+
+    /// Angle of a turn, degrees.
+    #[must_use]
+    pub fn turn_deg(self) -> f64 {
+        self.turn_deg
+    }
+
+    /// How many turns make a half turn.
+    pub(super) fn turns_around(self) -> i32 {
+        (180.0 / self.turn_deg).round() as i32
+    }
+}
+
+impl Default for Gait {
+    /// VLN-CE's: 0.25 m and 15 degrees.
+    fn default() -> Self {
+        Self { forward_m: 0.25, turn_deg: 15.0 }
+    }
+}
+
+/// Where an agent stands, and how often it has turned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stance {
+    /// Its place on the ground.
+    pub foothold: Foothold,
+    start: Heading,
+    /// Turns to the right, less those to the left. The heading is counted from the start, so that no error adds up.
+    turns: i32,
+}
+
+impl Stance {
+    /// An agent at a place, that looks along a heading.
+    #[must_use]
+    pub fn new(foothold: Foothold, heading: Heading) -> Self {
+        Self { foothold, start: heading, turns: 0 }
+    }
+
+    /// The direction in which it looks.
+    #[must_use]
+    pub fn heading(&self, gait: Gait) -> Heading {
+        self.start.turned(f64::from(self.turns) * gait.turn_deg.to_radians())
+    }
+
+    /// The same after so many turns to the right; to the left if negative.
+    pub(super) fn turned(self, turns: i32) -> Self {
+        Self { turns: self.turns + turns, ..self }
+    }
+
+    /// Where a step forward leads.
+    pub(super) fn ahead(&self, ground: &Ground, gait: Gait) -> Stride {
+        let to: DVec3 = self.foothold.place + self.heading(gait).direction() * gait.forward_m;
+        ground.stride(&self.foothold, to)
+    }
+
+    /// The agent after an action, and whether the ground blocked it.
+    #[must_use]
+    pub fn after(self, action: Action, ground: &Ground, gait: Gait) -> (Self, bool) {
+        match action {
+            Action::Stop => (self, false),
+            Action::Left => (self.turned(-1), false),
+            Action::Right => (self.turned(1), false),
+            Action::Forward => {
+                let stride = self.ahead(ground, gait);
+                (Self { foothold: stride.end, ..self }, stride.is_blocked)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaits_that_lead_nowhere_are_refused() {
+        assert!(Gait::new(0.25, 15.0).is_ok() && Gait::new(0.5, 22.5).is_ok());
+        for (forward_m, turn_deg) in
+            [(0.0, 15.0), (f64::NAN, 15.0), (0.25, 0.0), (0.25, 50.0), (0.25, -15.0), (9.0, 15.0)]
+        {
+            assert!(Gait::new(forward_m, turn_deg).is_err(), "{forward_m} {turn_deg}");
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Follows a line over the ground by single actions.
+
+use super::{
+    actions::{Gait, Stance},
+    line::Line,
+};
+use crate::ground::{Ground, NoWay};
+use wayword_core::{Action, DVec3, Heading};
+
+/// How far ahead on the line the agent aims, in steps.
+const AIM_STEPS: f64 = 2.0;
+/// How much nearer to its aim a step must end so that the agent turns once more for it, in steps. It keeps the agent
+/// from turning to and fro on a straight line.
+const TURN_STEPS: f64 = 0.04;
+/// A step forward gets at least this much farther along the line, in steps.
+const PROGRESS_STEPS: f64 = 0.1;
+/// How far along the line a step can get, in steps: around a corner, more than one.
+const REACH_STEPS: f64 = 3.0;
+/// Two places of the ground whose heights differ by less are on one level, metres.
+const LEVEL_M: f64 = 0.1;
+/// Most actions of one walk.
+const MOST_ACTIONS: usize = 20_000;
+
+/// A walk by single actions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Walked {
+    /// The actions; the last is [`Action::Stop`].
+    pub actions: Vec<Action>,
+    /// Where the agent is before each action.
+    pub stances: Vec<Stance>,
+    /// For each place of the walk, the number of the action before which the agent has come there.
+    pub reached: Vec<usize>,
+    /// How far the agent stops from the last place, metres.
+    pub off_m: f64,
+}
+
+/// Why a walk cannot be followed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Astray {
+    /// There is no ground at a place, or no way to it.
+    #[error("place {place} of the walk: {reason}")]
+    NoWay {
+        /// Its number, from 0.
+        place: usize,
+        /// What is wrong.
+        reason: NoWay,
+    },
+    /// No action leads on.
+    #[error("blocked after {actions} actions at ({:.2}, {:.2}, {:.2}), {left_m:.2} m before the end: no step forward stays within {tolerance_m} m of the walk", .at.x, .at.y, .at.z)]
+    Blocked {
+        /// Where, world frame, metres.
+        at: DVec3,
+        /// How many actions were taken.
+        actions: usize,
+        /// What is left of the walk, metres.
+        left_m: f64,
+        /// How far the agent may be off the walk, metres.
+        tolerance_m: f64,
+    },
+    /// The walk takes too many actions.
+    #[error("the walk takes more than {MOST_ACTIONS} actions")]
+    TooLong,
+}
+
+/// Follows a walk greedily: the shortest ways from each of its places to the next, joined. The agent begins at the
+/// first place and looks along `heading`. Before each step forward it turns to where the step ends nearest to a point
+/// two steps ahead; it takes no step that the ground blocks or that ends more than `tolerance_m` off the walk. It stops
+/// when less than half a step is left.
+///
+/// # Errors
+/// [`Astray`], with the place.
+pub fn follow(
+    ground: &Ground,
+    places: &[DVec3],
+    heading: Heading,
+    gait: Gait,
+    tolerance_m: f64,
+) -> Result<Walked, Astray> {
+    let (line, marks) = joined(ground, places)?;
+    let first = places.first().copied().unwrap_or_default();
+    let off_ground = || Astray::NoWay { place: 0, reason: NoWay::OffGround(first) };
+    let start = Stance::new(ground.nearest(first).ok_or_else(off_ground)?, heading);
+    let mut follower = Follower { ground, line: &line, gait, tolerance_m };
+    follower.walk(start, &marks)
+}
+
+/// Where an agent is before each of these actions and after the last; `None` for a step that the ground blocked, and
+/// nothing after it.
+pub fn replay<'a>(
+    ground: &'a Ground,
+    start: Stance,
+    actions: &'a [Action],
+    gait: Gait,
+) -> impl Iterator<Item = Option<Stance>> + 'a {
+    let mut now = Some(start);
+    std::iter::once(Some(start)).chain(actions.iter().map_while(move |action| {
+        let (next, is_blocked) = now?.after(*action, ground, gait);
+        now = (!is_blocked).then_some(next);
+        Some(now)
+    }))
+}
+
+/// The line along the shortest ways from place to place, and how far along it each place is.
+fn joined(ground: &Ground, places: &[DVec3]) -> Result<(Line, Vec<f64>), Astray> {
+    let mut line = Line::default();
+    let mut marks = Vec::with_capacity(places.len());
+    let on_ground = |place: usize| {
+        let at = places.get(place).copied().unwrap_or_default();
+        ground.nearest(at).map(|it| it.place).ok_or(Astray::NoWay { place, reason: NoWay::OffGround(at) })
+    };
+    marks.push(line.push(on_ground(0)?));
+    for (number, pair) in places.windows(2).enumerate() {
+        let way = ground.geodesic(pair[0], pair[1]);
+        let way = way.map_err(|reason| Astray::NoWay { place: number + 1, reason })?;
+        for corner in way.corners {
+            line.push(corner);
+        }
+        marks.push(line.push(on_ground(number + 1)?));
+    }
+    Ok((line, marks))
+}
+
+struct Follower<'a> {
+    ground: &'a Ground,
+    line: &'a Line,
+    gait: Gait,
+    tolerance_m: f64,
+}
+
+impl Follower<'_> {
+    fn walk(&mut self, mut now: Stance, marks: &[f64]) -> Result<Walked, Astray> {
+        let forward_m = self.gait.forward_m();
+        let (mut actions, mut stances, mut reached) = (Vec::new(), Vec::new(), Vec::new());
+        let mut along = 0.0;
+        while self.line.length_m() - along > forward_m / 2.0 {
+            while marks.get(reached.len()).is_some_and(|mark| *mark <= along + forward_m / 2.0) {
+                reached.push(actions.len());
+            }
+            if actions.len() > MOST_ACTIONS {
+                return Err(Astray::TooLong);
+            }
+            let Some((turns, next)) = self.best(now, along) else {
+                let left_m = self.line.length_m() - along;
+                let (at, tolerance_m) = (now.foothold.place, self.tolerance_m);
+                return Err(Astray::Blocked { at, actions: actions.len(), left_m, tolerance_m });
+            };
+            let turn = if turns < 0 { Action::Left } else { Action::Right };
+            for action in std::iter::repeat_n(turn, turns.unsigned_abs() as usize).chain([Action::Forward]) {
+                stances.push(now);
+                actions.push(action);
+                (now, _) = now.after(action, self.ground, self.gait);
+            }
+            along = next;
+        }
+        reached.resize(marks.len(), actions.len());
+        stances.push(now);
+        actions.push(Action::Stop);
+        let off_m = (now.foothold.place - self.line.at(self.line.length_m())).truncate().length();
+        Ok(Walked { actions, stances, reached, off_m })
+    }
+
+    /// The turns before the next step forward, and how far along the line that step ends. Of two that are as good, the
+    /// one with fewer turns, and then the one to the left.
+    fn best(&self, now: Stance, along: f64) -> Option<(i32, f64)> {
+        let aim = self.line.at(along + AIM_STEPS * self.gait.forward_m());
+        let steps = self.steps(now, along).filter(|step| step.along - along >= self.least_m());
+        let straight = |step: Step| ((step.end - aim).truncate().length() + self.price_m(step.turns), step);
+        let found = least(steps.map(straight)).or_else(|| self.round_a_corner(now, along, aim))?;
+        Some((found.turns, found.along))
+    }
+
+    /// The step that shortens the way to the aim most, where no step gets farther along the line: the agent cut a corner,
+    /// and stands before the wall behind it.
+    fn round_a_corner(&self, now: Stance, along: f64, aim: DVec3) -> Option<Step> {
+        let left_m = |place: DVec3| self.ground.geodesic(place, aim).ok().map(|way| way.length_m);
+        let before_m = left_m(now.foothold.place)?;
+        let from_m = (along - REACH_STEPS * self.gait.forward_m()).max(0.0);
+        let steps = self.steps(now, from_m).filter_map(|step| {
+            let left_m = left_m(step.end)?;
+            let step = Step { along: step.along.max(along), ..step };
+            (before_m - left_m >= self.least_m()).then_some((left_m + self.price_m(step.turns), step))
+        });
+        least(steps)
+    }
+
+    /// The steps forward that the ground allows and that stay within the tolerance, by their turns.
+    fn steps(&self, now: Stance, from_m: f64) -> impl Iterator<Item = Step> {
+        let to_m = from_m + REACH_STEPS * self.gait.forward_m();
+        let turns = (0..=self.gait.turns_around()).flat_map(|turns| [-turns, turns]);
+        turns.filter_map(move |turns| {
+            let stride = now.turned(turns).ahead(self.ground, self.gait);
+            let (along, off_m) = self.line.nearest(stride.end.place, from_m, to_m)?;
+            if stride.is_blocked || off_m > self.tolerance_m {
+                return None;
+            }
+            // Else the agent could end beside a part of the walk that lies beyond a wall, or on another level.
+            let on_line = self.ground.nearest(self.line.at(along))?.place;
+            let across = self.ground.stride(&stride.end, on_line);
+            let is_beside = !across.is_blocked && (across.end.place.z - on_line.z).abs() <= LEVEL_M;
+            is_beside.then_some(Step { turns, end: stride.end.place, along })
+        })
+    }
+
+    /// What a step must gain at least, metres.
+    fn least_m(&self) -> f64 {
+        PROGRESS_STEPS * self.gait.forward_m()
+    }
+
+    fn price_m(&self, turns: i32) -> f64 {
+        f64::from(turns.abs()) * TURN_STEPS * self.gait.forward_m()
+    }
+}
+
+/// A step forward after some turns.
+#[derive(Clone, Copy)]
+struct Step {
+    turns: i32,
+    end: DVec3,
+    /// How far along the line it ends, metres.
+    along: f64,
+}
+
+/// The step with the least cost; of equals the first.
+fn least(steps: impl Iterator<Item = (f64, Step)>) -> Option<Step> {
+    steps.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, step)| step)
+}
+
+#[cfg(test)]
+mod tests;
