@@ -6,6 +6,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 use serde_json::{Map, Value, de::IoRead};
 use std::{
     cell::RefCell,
+    collections::BTreeSet,
     fmt,
     fs::{self, File},
     io::{self, BufRead, BufReader, Cursor, Read},
@@ -109,6 +110,24 @@ pub(crate) fn each_item_in(
     let items = Items::new(file, &mut take);
     let read = Within { items: &items, field }.deserialize(&mut parser);
     let read = read.and_then(|rest| parser.end().map(|()| rest));
+    read.map_err(|error| items.explain(&error))
+}
+
+/// Reads a file that is a JSON object with an item for each name, and passes each item to `take`, named.
+pub(crate) fn each_entry(
+    file: &Path,
+    mut take: impl FnMut(&str, Item<'_>) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
+    let mut parser = parser(file)?;
+    let name = RefCell::new(String::new());
+    let mut take = |place, value| {
+        let name = name.borrow();
+        let mut item = Item::new(file, place, value)?;
+        item.call(&name);
+        take(&name, item)
+    };
+    let items = Items::new(file, &mut take);
+    let read = Entries { items: &items, name: &name }.deserialize(&mut parser).and_then(|()| parser.end());
     read.map_err(|error| items.explain(&error))
 }
 
@@ -216,6 +235,16 @@ impl<'a> Items<'a> {
     }
 }
 
+impl Items<'_> {
+    /// Passes an item on. If it is refused, the reason is kept for [`Self::explain`].
+    fn hand_on_or_refuse<E: Error>(&self, value: Value) -> Result<(), E> {
+        self.hand_on(value).map_err(|refused| {
+            self.progress.borrow_mut().refused = Some(refused);
+            E::custom("refused")
+        })
+    }
+}
+
 impl<'de> DeserializeSeed<'de> for &Items<'_> {
     type Value = ();
 
@@ -234,12 +263,47 @@ impl<'de> Visitor<'de> for &Items<'_> {
     fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
         self.progress.borrow_mut().inside = true;
         while let Some(value) = list.next_element_seed(Strict(&self.field))? {
-            if let Err(refused) = self.hand_on(value) {
-                self.progress.borrow_mut().refused = Some(refused);
-                return Err(A::Error::custom("refused"));
-            }
+            self.hand_on_or_refuse(value)?;
         }
         self.progress.borrow_mut().inside = false;
+        Ok(())
+    }
+}
+
+/// A JSON object whose values are items.
+struct Entries<'i, 'a> {
+    items: &'i Items<'a>,
+    /// The name of the item that is read.
+    name: &'i RefCell<String>,
+}
+
+impl<'de> DeserializeSeed<'de> for Entries<'_, '_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Entries<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object with an item for each name")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
+        let mut names = BTreeSet::new();
+        while let Some(name) = entries.next_key::<String>()? {
+            if !names.insert(name.clone()) {
+                return Err(A::Error::custom(format_args!("{name:?} is given twice")));
+            }
+            self.name.replace(name);
+            self.items.progress.borrow_mut().inside = true;
+            let value = entries.next_value_seed(Strict(&self.items.field))?;
+            self.items.progress.borrow_mut().inside = false;
+            self.items.hand_on_or_refuse(value)?;
+        }
         Ok(())
     }
 }

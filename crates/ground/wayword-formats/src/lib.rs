@@ -28,7 +28,9 @@ pub mod submission;
 pub mod table;
 mod tally;
 mod tokens;
+pub mod trajectories;
 pub mod vlnce;
+pub mod vlnce_actions;
 mod vocabulary;
 
 pub use episode::{Episode, InHabitat};

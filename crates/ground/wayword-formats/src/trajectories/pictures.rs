@@ -1,0 +1,87 @@
+//! The pictures of walks.
+
+use super::{Place, Trajectory};
+use crate::{FormatError, output};
+use sha2::{Digest as _, Sha256};
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
+
+/// Largest picture that is read, bytes.
+const PICTURE_BYTES: u64 = 16 << 20;
+/// Most files of one shard.
+const SHARD_FILES: usize = 4_000_000;
+const HINT: &str = "write the trajectories again: the same command goes on where it stopped";
+
+/// The hash of a walk's pictures: of the length of each (8 bytes, little-endian) and its bytes, one after the other.
+#[derive(Debug, Clone, Default)]
+pub struct Digest(Sha256);
+
+impl Digest {
+    /// Takes the next picture.
+    pub fn take(&mut self, picture: &[u8]) {
+        self.0.update((picture.len() as u64).to_le_bytes());
+        self.0.update(picture);
+    }
+
+    /// The hash, in hexadecimal digits.
+    #[must_use]
+    pub fn finish(self) -> String {
+        self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// The pictures of a walk, checked against its number of actions and its hash. `folder` holds `trajectories.jsonl`.
+///
+/// # Errors
+/// When one is missing or cannot be read, or they are not those that were written.
+pub fn pictures(folder: &Path, trajectory: &Trajectory) -> Result<Vec<Vec<u8>>, FormatError> {
+    let count = trajectory.actions.len();
+    let (file, pictures) = match &trajectory.pictures {
+        Place::Folder(images) => {
+            let place = folder.join(images);
+            let each = (0..count).map(|number| {
+                let file = place.join(output::picture_name(number));
+                bytes(File::open(&file)).map_err(|source| FormatError::io(&file, "read", source))
+            });
+            (place.clone(), each.collect::<Result<Vec<_>, _>>()?)
+        }
+        Place::Sample { shard, key } => {
+            let file = folder.join(shard);
+            let found = sample(&file, key, count).map_err(|source| FormatError::io(&file, "read", source))?;
+            (file, found)
+        }
+    };
+    let mut digest = Digest::default();
+    pictures.iter().for_each(|picture| digest.take(picture));
+    if pictures.len() != count || digest.finish() != trajectory.sha256 {
+        let problem = format!("the pictures of walk {} are not those that were written", trajectory.id);
+        return Err(FormatError::document(&file, problem, HINT));
+    }
+    Ok(pictures)
+}
+
+fn bytes(file: io::Result<impl Read>) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    file?.take(PICTURE_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > PICTURE_BYTES {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "a picture is larger than 16 MiB"));
+    }
+    Ok(bytes)
+}
+
+/// The pictures of one sample of a shard.
+fn sample(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
+    let mut archive = tar::Archive::new(io::BufReader::new(File::open(file)?));
+    let mut found = Vec::new();
+    for entry in archive.entries()?.take(SHARD_FILES) {
+        let entry = entry?;
+        let name = entry.path()?.to_string_lossy().into_owned();
+        if found.len() < count && name == format!("{key}.{}", output::picture_name(found.len())) {
+            found.push(bytes(Ok(entry))?);
+        }
+    }
+    Ok(found)
+}

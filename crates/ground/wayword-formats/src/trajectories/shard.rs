@@ -1,0 +1,66 @@
+//! Shards as WebDataset reads them: tar archives in which the files of a sample follow one another and share the part
+//! of their name before the first point.
+
+use super::{Trajectory, line};
+use crate::output;
+use std::{
+    fmt,
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+/// A shard that is being written, under another name until it is whole.
+pub struct Shard {
+    file: PathBuf,
+    beside: PathBuf,
+    tar: tar::Builder<BufWriter<File>>,
+}
+
+impl fmt::Debug for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Shard({})", self.file.display())
+    }
+}
+
+impl Shard {
+    /// Begins a shard.
+    ///
+    /// # Errors
+    /// When the file cannot be made.
+    pub fn begin(file: &Path) -> io::Result<Self> {
+        let beside = file.with_extension("tar.part");
+        let tar = tar::Builder::new(BufWriter::new(File::create(&beside)?));
+        Ok(Self { file: file.to_owned(), beside, tar })
+    }
+
+    /// Adds a walk with its pictures.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn add(&mut self, key: &str, trajectory: &Trajectory, pictures: &[Vec<u8>]) -> io::Result<()> {
+        self.append(&format!("{key}.json"), &serde_json::to_vec(&line(trajectory))?)?;
+        let mut named = pictures.iter().enumerate();
+        named.try_for_each(|(number, picture)| self.append(&format!("{key}.{}", output::picture_name(number)), picture))
+    }
+
+    /// The same bytes for the same walks: no time and no owner.
+    fn append(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
+        let mut header = tar::Header::new_ustar();
+        header.set_size(bytes.len() as u64);
+        header.set_mode(0o644);
+        header.set_cksum();
+        self.tar.append_data(&mut header, name, bytes)
+    }
+
+    /// Ends the shard: it survives a crash of the machine, and has its name.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn finish(self) -> io::Result<()> {
+        let mut out = self.tar.into_inner()?;
+        out.flush()?;
+        out.get_ref().sync_all()?;
+        fs::rename(&self.beside, &self.file)
+    }
+}

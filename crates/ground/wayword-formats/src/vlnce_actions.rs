@@ -1,0 +1,133 @@
+//! VLN-CE's files of ground truth actions (`SPLIT_gt.json.gz`), which belong to a file of episodes: for each episode
+//! `actions`, `forward_steps`, and the `locations` of the agent at the start and after each step forward.
+
+use crate::{
+    FormatError, Item,
+    habitat::{habitat_from_wayword, wayword_from_habitat},
+    input, output,
+};
+use serde_json::{Value, json};
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::{Action, DVec3};
+
+/// Most actions of one episode.
+const ACTIONS: usize = 25_000;
+
+/// What an agent does in an episode.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Acted {
+    /// Its actions; the last is [`Action::Stop`].
+    pub actions: Vec<Action>,
+    /// Where it is at the start and after each step forward, on the floor, world frame, metres.
+    pub locations: Vec<DVec3>,
+}
+
+impl Acted {
+    /// From where the agent is before each action.
+    #[must_use]
+    pub fn of(actions: &[Action], positions: &[DVec3]) -> Self {
+        let after_steps = actions.iter().zip(positions.iter().skip(1));
+        let after_steps = after_steps.filter(|(action, _)| **action == Action::Forward).map(|(_, position)| *position);
+        let locations = positions.iter().take(1).copied().chain(after_steps).collect();
+        Self { actions: actions.to_vec(), locations }
+    }
+}
+
+/// Writes what agents do, by episode; gzip where the name ends in `.gz`.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write(file: &Path, acted: &BTreeMap<String, Acted>) -> Result<(), FormatError> {
+    let of = |acted: &Acted| {
+        let locations: Vec<_> = acted.locations.iter().map(|place| habitat_from_wayword(*place).to_array()).collect();
+        let forward_steps = acted.actions.iter().filter(|action| **action == Action::Forward).count();
+        json!({ "locations": locations, "forward_steps": forward_steps, "actions": acted.actions })
+    };
+    output::write_file(file, |out| {
+        let mut before = "{\n";
+        for (episode, acted) in acted {
+            write!(out, "{before}{}: {}", Value::from(episode.as_str()), of(acted))?;
+            before = ",\n";
+        }
+        out.write_all(if before == "{\n" { b"{}" } else { b"\n}" })
+    })
+}
+
+/// Reads what agents do, by episode; plain or gzip.
+///
+/// # Errors
+/// When the file cannot be read, or an episode breaks a rule; the error names it and the field.
+pub fn read(file: &Path) -> Result<BTreeMap<String, Acted>, FormatError> {
+    let mut all = BTreeMap::new();
+    input::each_entry(file, |episode, mut item| {
+        all.insert(episode.to_owned(), take(&mut item)?);
+        Ok(())
+    })?;
+    Ok(all)
+}
+
+fn take(item: &mut Item<'_>) -> Result<Acted, FormatError> {
+    let (actions, locations) = (item.take("actions")?, item.take("locations")?);
+    let action = |(at, value): (usize, &Value)| item.parsed::<Action>(&format!("actions[{at}]"), value.clone());
+    let actions: Vec<Action> =
+        item.list("actions", &actions, ACTIONS)?.iter().enumerate().map(action).collect::<Result<_, _>>()?;
+    let place = |(at, value): (usize, &Value)| item.position(&format!("locations[{at}]"), value);
+    let locations = item.list("locations", &locations, ACTIONS)?.iter().enumerate().map(place);
+    let locations: Vec<DVec3> = locations.map(|place| place.map(wayword_from_habitat)).collect::<Result<_, _>>()?;
+    let forward = actions.iter().filter(|action| **action == Action::Forward).count();
+    let steps = item.take("forward_steps")?;
+    if steps.as_u64() != Some(forward as u64) {
+        let problem = format!("expected {forward}, the number of steps forward among the actions, found {steps}");
+        return Err(item.wrong("forward_steps", problem, "count the actions that are 1"));
+    }
+    Ok(Acted { actions, locations })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn acted() -> BTreeMap<String, Acted> {
+        let positions = [0.0, 0.0, 0.25, 0.5].map(|y| DVec3::new(1.0, y, 3.0));
+        let acted = Acted::of(&[Action::Left, Action::Forward, Action::Forward, Action::Stop], &positions);
+        BTreeMap::from([("house2-1-0".to_owned(), acted)])
+    }
+
+    #[test]
+    fn actions_come_back_and_look_as_vln_ce_has_them() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["train_gt.json", "train_gt.json.gz"] {
+            let file = folder.path().join(name);
+            write(&file, &acted()).unwrap();
+            assert_eq!(read(&file).unwrap(), acted());
+        }
+        let text = std::fs::read_to_string(folder.path().join("train_gt.json")).unwrap();
+        let read: Value = serde_json::from_str(&text).unwrap();
+        let episode = &read["house2-1-0"];
+        assert_eq!((&episode["actions"], &episode["forward_steps"]), (&json!([2, 1, 1, 0]), &json!(2)));
+        assert_eq!(episode["locations"], json!([[1.0, 3.0, 0.0], [1.0, 3.0, -0.25], [1.0, 3.0, -0.5]]));
+    }
+
+    #[test]
+    fn what_breaks_a_rule_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("gt.json");
+        for (text, told) in [
+            (
+                r#"{"7": {"actions": [1, 9], "locations": [], "forward_steps": 1}}"#,
+                "(id 7): field \"actions[1]\": 9 is no action",
+            ),
+            (r#"{"7": {"actions": [1, 0], "locations": [[0, 0]], "forward_steps": 1}}"#, "field \"locations[0]\""),
+            (
+                r#"{"7": {"actions": [1, 0], "locations": [], "forward_steps": 2}}"#,
+                "field \"forward_steps\": expected 1",
+            ),
+            (r#"{"7": []}"#, "expected an object"),
+            ("[]", "expected"),
+        ] {
+            std::fs::write(&file, text).unwrap();
+            let error = read(&file).unwrap_err().to_string();
+            assert!(error.contains("gt.json") && error.contains(told), "{error}");
+        }
+    }
+}
