@@ -1,61 +1,124 @@
-//! Fills voxels with triangles, and cuts those that Recast cannot cut.
+//! Fills voxels with triangles.
+//!
+//! The cutting is done here, as Recast does it (`rasterizeTri`), because rerecast 0.5.0 goes wrong where rounding leaves
+//! nothing of a triangle for its last row or column of voxels: it then takes an old piece again, and walls stand where
+//! there are none. Each piece goes to rerecast as a triangle within one column of voxels, which it need not cut.
 
 use glam::Vec3A;
 use rerecast::{AreaType, Heightfield, TriMesh};
-use wayword_core::contain::contained;
 
-/// How often a triangle is cut into four at most.
-const CUTS: u32 = 4;
-
-/// A triangle that cannot be cut along the voxels, however small its pieces are.
-#[derive(Debug, thiserror::Error)]
-#[error("the triangle with the corners {0:?}, {1:?} and {2:?} cannot be cut along the voxels")]
-struct Uncut([f32; 3], [f32; 3], [f32; 3]);
+const X: usize = 0;
+const Z: usize = 2;
 
 /// Marks the voxels that each triangle touches.
-///
-/// Recast cuts a triangle along the voxels into pieces of seven corners at most. Where an edge runs nearly along a row of
-/// voxels, rounding makes more of them, and rerecast panics. Such a triangle is cut into four, which touch the same voxels.
 pub(super) fn fill(solid: &mut Heightfield, mesh: &TriMesh, climb: u16) -> Result<(), Box<dyn std::error::Error>> {
     for (corners, area) in mesh.indices.iter().zip(&mesh.area_types) {
         let triangle = corners.to_array().map(|corner| mesh.vertices[corner as usize]);
-        fill_one(solid, triangle, *area, climb, CUTS)?;
+        fill_one(solid, &triangle, *area, climb)?;
     }
     Ok(())
 }
 
 fn fill_one(
     solid: &mut Heightfield,
-    triangle: [Vec3A; 3],
+    triangle: &[Vec3A; 3],
     area: AreaType,
     climb: u16,
-    cuts: u32,
 ) -> Result<(), Box<dyn std::error::Error>> {
-    // It panics while it cuts, and only adds whole spans: those that are there stay sound.
-    match contained(|| solid.rasterize_triangle(triangle, area, climb)) {
-        Some(done) => Ok(done?),
-        None if cuts == 0 => {
-            let [a, b, c] = triangle.map(|corner| corner.to_array());
-            Err(Uncut(a, b, c).into())
+    let (low, side) = (Vec3A::from(solid.aabb.min), solid.cell_size);
+    let (rows, columns) = (i32::from(solid.height), i32::from(solid.width));
+    for (row, in_row) in slices(triangle.to_vec(), Z, low.z, side, rows) {
+        for (column, piece) in slices(in_row, X, low.x, side, columns) {
+            let (bottom, top) = piece.iter().fold((f32::MAX, f32::MIN), |(b, t), at| (b.min(at.y), t.max(at.y)));
+            let middle = low + Vec3A::new(column as f32 + 0.5, 0.0, row as f32 + 0.5) * side;
+            let within = [bottom, top, top].map(|y| Vec3A::new(middle.x, y, middle.z));
+            solid.rasterize_triangle(within, area, climb)?;
         }
-        None => quarters(triangle).into_iter().try_for_each(|piece| fill_one(solid, piece, area, climb, cuts - 1)),
     }
+    Ok(())
 }
 
-/// A triangle cut at the middles of its sides.
-fn quarters([a, b, c]: [Vec3A; 3]) -> [[Vec3A; 3]; 4] {
-    let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
-    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+/// The parts of a convex polygon in slices of a thickness along an axis, each with its number; slices before the first
+/// and after the last of `count` are left out.
+fn slices(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) -> Vec<(i32, Vec<Vec3A>)> {
+    let ends = left.iter().fold((f32::MAX, f32::MIN), |(a, b), at| (a.min(at[axis]), b.max(at[axis])));
+    let number = |at: f32| (((at - low) / side).floor() as i32).clamp(-1, count - 1);
+    let (first, last) = (number(ends.0), number(ends.1));
+    let mut slices = Vec::new();
+    for slice in first..=last {
+        let (below, above) = cut(&left, axis, low + (slice + 1) as f32 * side);
+        left = above;
+        if slice >= 0 && below.len() >= 3 {
+            slices.push((slice, below));
+        }
+    }
+    slices
+}
+
+/// A convex polygon, cut at a place along an axis: the part up to there, and the part from there on.
+fn cut(polygon: &[Vec3A], axis: usize, at: f32) -> (Vec<Vec3A>, Vec<Vec3A>) {
+    let (mut below, mut above) = (Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1));
+    for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let (left_a, left_b) = (at - a[axis], at - b[axis]);
+        if left_a >= 0.0 {
+            below.push(*a);
+        }
+        if left_a <= 0.0 {
+            above.push(*a);
+        }
+        if left_a * left_b < 0.0 {
+            let on_line = *a + (*b - *a) * (left_a / (left_a - left_b));
+            below.push(on_line);
+            above.push(on_line);
+        }
+    }
+    (below, above)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+    use rerecast::{Aabb3d, HeightfieldBuilder};
+
+    fn area_m2(polygon: &[Vec3A]) -> f32 {
+        let fan = (1..polygon.len().saturating_sub(1))
+            .map(|n| (polygon[n] - polygon[0]).cross(polygon[n + 1] - polygon[0]).length() / 2.0);
+        fan.sum()
+    }
+
+    proptest! {
+        #[test]
+        fn the_slices_of_a_triangle_are_as_large_as_the_triangle(
+            corners in prop::array::uniform3((0.0..3.0f32, 0.0..2.0f32, 0.0..3.0f32)),
+        ) {
+            let triangle: Vec<Vec3A> = corners.iter().map(|(x, y, z)| Vec3A::new(*x, *y, *z)).collect();
+            let rows = slices(triangle.clone(), Z, 0.0, 0.05, 60);
+            let columns = rows.iter().flat_map(|(_, row)| slices(row.clone(), X, 0.0, 0.05, 60));
+            let sum: f32 = columns.map(|(_, piece)| area_m2(&piece)).sum();
+            prop_assert!((sum - area_m2(&triangle)).abs() < 1e-3, "{sum}");
+        }
+    }
+
+    /// The columns in which something stands.
+    fn filled(triangle: [Vec3A; 3]) -> Vec<(u16, u16)> {
+        let aabb = Aabb3d { min: glam::Vec3::ZERO, max: glam::Vec3::new(4.0, 2.5, 4.0) };
+        let mut solid = HeightfieldBuilder { aabb, cell_size: 0.05, cell_height: 0.2 }.build().unwrap();
+        fill_one(&mut solid, &triangle, AreaType::NOT_WALKABLE, 1).unwrap();
+        let columns = (0..solid.height).flat_map(|z| (0..solid.width).map(move |x| (x, z)));
+        columns
+            .filter(|(x, z)| solid.spans[usize::from(*x) + usize::from(*z) * usize::from(solid.width)].is_some())
+            .collect()
+    }
 
     #[test]
-    fn quarters_are_as_large_as_the_whole() {
-        let area = |[a, b, c]: [Vec3A; 3]| (b - a).cross(c - a).length();
-        let leaf = [[0.19, 0.29, -4.9], [0.18, 0.29, -4.85], [0.32, 0.31, -4.85]].map(Vec3A::from);
-        assert!((quarters(leaf).map(area).iter().sum::<f32>() / area(leaf) - 1.0).abs() < 1e-4);
+    fn a_wall_stands_where_it_is_and_nowhere_else() {
+        // A post whose sides lie on the borders of voxels.
+        for at in [1.0, 1.05, 2.1, 3.3, 3.85_f32] {
+            let post = [Vec3A::new(at, 0.0, at), Vec3A::new(at + 0.15, 2.4, at), Vec3A::new(at, 2.4, at)];
+            let columns = filled(post);
+            let near = |n: u16| (f32::from(n) * 0.05 - at).abs() < 0.26;
+            assert!(!columns.is_empty() && columns.iter().all(|(x, z)| near(*x) && near(*z)), "{at}: {columns:?}");
+        }
     }
 }
