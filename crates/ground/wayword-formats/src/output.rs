@@ -77,8 +77,3 @@ pub fn write_sidecar<T: Serialize>(dataset: &Path, records: &[T]) -> Result<Path
     write_file(&sidecar, |out| write_lines(out, records))?;
     Ok(sidecar)
 }
-
-/// The name of the n-th picture of a walk.
-pub(crate) fn picture_name(number: usize) -> String {
-    format!("{number:04}.jpg")
-}

@@ -29,6 +29,7 @@ mod sample;
 mod share;
 mod skeleton;
 mod stage;
+mod steps;
 mod storm;
 mod study_coverage;
 mod sweep;
@@ -189,6 +190,9 @@ enum What {
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
+    /// Take the walks of an export of steps again: whether their actions lead to their ends, and whether their pictures are those
+    /// of their poses.
+    Steps(steps::Flags),
     /// Hold the findings of `wayword check` against spans of texts that people called right or wrong: HEAR's file.
     #[command(mut_arg("file", |file| file.help("File of labelled texts, in HEAR's format")))]
     #[command(mut_arg("show", |show| show.help("Show at most this many findings about words that people called right")))]
@@ -262,6 +266,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Parity(flags) => parity::measure(&flags, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
+        What::Steps(flags) => steps::measure(&flags, output),
         What::People(flags) => people::measure(flags, output),
         What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
         What::Found(flags) => found::measure(flags, output),

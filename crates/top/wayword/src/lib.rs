@@ -43,6 +43,8 @@ pub mod team;
 mod terms;
 mod text_file;
 mod texts;
+#[cfg(feature = "habitat")]
+mod walking;
 
 use clap::Parser;
 use cli::Cli;

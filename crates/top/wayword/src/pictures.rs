@@ -26,7 +26,7 @@ pub struct Picture {
 pub fn encode(ahead: &[View]) -> Result<Vec<Picture>, Error> {
     let images = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.as_deref()?)));
     let encoded = images.map(|(frame, image)| {
-        let jpeg = jpeg(image).map_err(|error| {
+        let jpeg = jpeg(image, JPEG_QUALITY).map_err(|error| {
             Error::usage(
                 format!("the picture of frame {frame} cannot be written as JPEG: {error}"),
                 "report this as a bug",
@@ -37,9 +37,13 @@ pub fn encode(ahead: &[View]) -> Result<Vec<Picture>, Error> {
     encoded.collect()
 }
 
-fn jpeg(image: &Image) -> Result<Vec<u8>, ImageError> {
+/// A picture as the bytes of a JPEG file.
+///
+/// # Errors
+/// When it has no pixels, or too many for JPEG.
+pub(crate) fn jpeg(image: &Image, quality: u8) -> Result<Vec<u8>, ImageError> {
     let mut jpeg = Vec::new();
-    let encoder = JpegEncoder::new_with_quality(&mut jpeg, JPEG_QUALITY);
+    let encoder = JpegEncoder::new_with_quality(&mut jpeg, quality);
     encoder.write_image(image.rgb(), image.width_px(), image.height_px(), ExtendedColorType::Rgb8)?;
     Ok(jpeg)
 }

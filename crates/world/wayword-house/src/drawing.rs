@@ -20,6 +20,12 @@ pub(super) struct Drawing {
     pub(super) textures: Vec<Texture>,
 }
 
+/// The surfaces of everything in a house, world frame, metres.
+#[must_use]
+pub fn surfaces(house: &House) -> Vec<Mesh> {
+    draw(house).meshes
+}
+
 /// Collects the meshes of everything in a house.
 pub(super) fn draw(house: &House) -> Drawing {
     let mut drawing = Collector::default();

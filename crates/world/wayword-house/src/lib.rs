@@ -27,6 +27,7 @@ mod textures;
 
 pub use catalogue::FurnitureKind;
 pub use colour::Colour;
+pub use drawing::surfaces;
 pub use graph::{EYE_M, viewpoint_graph};
 pub use ground::{Ground, NoWay, RADIUS_CM, Way};
 pub use home::generate;

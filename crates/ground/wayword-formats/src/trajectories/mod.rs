@@ -9,7 +9,7 @@ mod pictures;
 mod read;
 mod shard;
 
-pub use pictures::{Digest, pictures};
+pub use pictures::{Digest, picture_name, pictures};
 pub use read::read;
 pub use shard::Shard;
 

@@ -1,7 +1,7 @@
 //! The pictures of walks.
 
 use super::{Place, Trajectory};
-use crate::{FormatError, output};
+use crate::FormatError;
 use sha2::{Digest as _, Sha256};
 use std::{
     fs::File,
@@ -14,6 +14,12 @@ const PICTURE_BYTES: u64 = 16 << 20;
 /// Most files of one shard.
 const SHARD_FILES: usize = 4_000_000;
 const HINT: &str = "write the trajectories again: the same command goes on where it stopped";
+
+/// The name of the n-th picture of a walk, from 0.
+#[must_use]
+pub fn picture_name(number: usize) -> String {
+    format!("{number:04}.jpg")
+}
 
 /// The hash of a walk's pictures: of the length of each (8 bytes, little-endian) and its bytes, one after the other.
 #[derive(Debug, Clone, Default)]
@@ -43,7 +49,7 @@ pub fn pictures(folder: &Path, trajectory: &Trajectory) -> Result<Vec<Vec<u8>>, 
         Place::Folder(images) => {
             let place = folder.join(images);
             let each = (0..count).map(|number| {
-                let file = place.join(output::picture_name(number));
+                let file = place.join(picture_name(number));
                 bytes(File::open(&file)).map_err(|source| FormatError::io(&file, "read", source))
             });
             (place.clone(), each.collect::<Result<Vec<_>, _>>()?)
@@ -79,7 +85,7 @@ fn sample(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
     for entry in archive.entries()?.take(SHARD_FILES) {
         let entry = entry?;
         let name = entry.path()?.to_string_lossy().into_owned();
-        if found.len() < count && name == format!("{key}.{}", output::picture_name(found.len())) {
+        if found.len() < count && name == format!("{key}.{}", picture_name(found.len())) {
             found.push(bytes(Ok(entry))?);
         }
     }

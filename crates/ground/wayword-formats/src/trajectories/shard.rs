@@ -1,8 +1,7 @@
 //! Shards as WebDataset reads them: tar archives in which the files of a sample follow one another and share the part
 //! of their name before the first point.
 
-use super::{Trajectory, line};
-use crate::output;
+use super::{Trajectory, line, pictures::picture_name};
 use std::{
     fmt,
     fs::{self, File},
@@ -41,7 +40,7 @@ impl Shard {
     pub fn add(&mut self, key: &str, trajectory: &Trajectory, pictures: &[Vec<u8>]) -> io::Result<()> {
         self.append(&format!("{key}.json"), &serde_json::to_vec(&line(trajectory))?)?;
         let mut named = pictures.iter().enumerate();
-        named.try_for_each(|(number, picture)| self.append(&format!("{key}.{}", output::picture_name(number)), picture))
+        named.try_for_each(|(number, picture)| self.append(&format!("{key}.{}", picture_name(number)), picture))
     }
 
     /// The same bytes for the same walks: no time and no owner.

@@ -47,7 +47,7 @@ fn what_is_written_is_read_with_its_pictures() {
     std::fs::create_dir_all(&images).unwrap();
     std::fs::create_dir_all(folder.path().join("shards")).unwrap();
     for (number, picture) in views("a").iter().enumerate() {
-        std::fs::write(images.join(output::picture_name(number)), picture).unwrap();
+        std::fs::write(images.join(picture_name(number)), picture).unwrap();
     }
     let mut shard = Shard::begin(&folder.path().join("shards/000000.tar")).unwrap();
     shard.add("000000", &trajectory("other", packed.pictures.clone()), &views("other")).unwrap();

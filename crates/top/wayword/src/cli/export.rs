@@ -1,6 +1,6 @@
 //! `wayword export` as the user types it.
 
-use super::AskedWorld;
+use super::{AskedSteps, AskedWorld};
 use crate::settings::AskedPlatform;
 use clap::{Args, ValueEnum};
 use std::{fmt, path::PathBuf};
@@ -25,6 +25,8 @@ pub enum ExportFormat {
     Parquet,
     /// A folder with tables and a dataset card.
     Hf,
+    /// A folder of trajectories: single actions, with a picture before each.
+    Steps,
 }
 
 impl ExportFormat {
@@ -37,20 +39,26 @@ impl ExportFormat {
             Self::Rxr => Some(Format::Rxr),
             Self::Vlnce => Some(Format::Vlnce),
             Self::Wayword => Some(Format::Wayword),
-            Self::Duet | Self::Parquet | Self::Hf => None,
+            Self::Duet | Self::Parquet | Self::Hf | Self::Steps => None,
         }
     }
 
-    /// Whether it takes several runs, and texts of several styles.
+    /// Whether it takes several runs.
     #[must_use]
-    pub fn bears_all(self) -> bool {
+    pub fn takes_several_runs(self) -> bool {
         matches!(self, Self::Wayword | Self::Parquet | Self::Hf)
+    }
+
+    /// Whether it takes texts of several styles.
+    #[must_use]
+    pub fn takes_all_styles(self) -> bool {
+        self.takes_several_runs() || self == Self::Steps
     }
 
     /// Whether what is written says of each text which split it is in.
     #[must_use]
     pub fn says_splits(self) -> bool {
-        matches!(self, Self::Rxr | Self::Duet | Self::Parquet | Self::Hf)
+        matches!(self, Self::Rxr | Self::Duet | Self::Parquet | Self::Hf | Self::Steps)
     }
 }
 
@@ -81,13 +89,15 @@ Examples:
   wayword export --run runs/val_seen --style r2r --format duet --tokenizer hf/google-bert/bert-base-uncased --out annotations
   wayword export --run runs/houses --format hf --out published      (a folder that Python's datasets reads)
   wayword export --run runs/houses --format parquet --out houses.parquet
+  wayword export --run runs/houses --format steps --out train        (VLN-CE's actions, with a picture before each)
+  wayword export --run runs/houses --format steps --shard 100 --size-px 640x480 --out shards
   wayword export --run runs/val_seen --style r2r --highlight doubts
   wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]
 pub struct Export {
     /// Run folder. Several can be merged in the formats wayword, parquet and hf.
     #[arg(long, value_name = "DIR")]
     pub run: Vec<PathBuf>,
-    /// Export only the instructions of this style; required for all formats but wayword, parquet and hf.
+    /// Export only the instructions of this style; required for all formats but wayword, parquet, hf and steps.
     #[arg(long, value_name = "STYLE")]
     pub style: Option<String>,
     /// Instead of a dataset, write NAME.html and NAME.json: the texts with the words that a reader should doubt, and up to three
@@ -104,10 +114,11 @@ pub struct Export {
     #[arg(long, value_name = "WORLD", value_enum, default_value_t)]
     pub world: AskedWorld,
     /// Format: r2r, reverie, rxr, vlnce, wayword; duet, the files of VLN-DUET and VLN-HAMT with the ids of tokens; parquet, a table;
-    /// hf, a folder with tables and a dataset card, made for publishing.
+    /// hf, a folder with tables and a dataset card, made for publishing; steps, a folder of single actions with a picture before
+    /// each, for training.
     #[arg(long, value_enum, hide_possible_values = true)]
     pub format: Option<ExportFormat>,
-    /// File to write; for duet and hf a folder. Where a format's loaders refuse unknown fields, the provenance goes into a second
+    /// File to write; for duet, hf and steps a folder. Where a format's loaders refuse unknown fields, the provenance goes into a second
     /// file beside it.
     #[arg(long, value_name = "PATH")]
     pub out: Option<PathBuf>,
@@ -133,4 +144,7 @@ pub struct Export {
     /// Seed of the choice of val scenes.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// How walks are taken in single actions.
+    #[command(flatten)]
+    pub steps: AskedSteps,
 }

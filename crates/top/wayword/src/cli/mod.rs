@@ -11,6 +11,7 @@ mod perceive;
 mod pictures;
 mod robustness;
 mod similarity;
+mod steps;
 mod study;
 mod view;
 
@@ -29,6 +30,7 @@ pub use perceive::Perceive;
 pub use pictures::Pictured;
 pub use robustness::Robustness;
 pub use similarity::{By, Similarity, Tokens};
+pub use steps::AskedSteps;
 pub use study::{
     Control, NamedSet, Study, StudyClose, StudyCommand, StudyForget, StudyInvite, StudyMode, StudyNew, StudyPlan,
     StudyReconcile, StudyRecruiter, StudyResults, StudyServe, StudyStatus,

@@ -31,6 +31,8 @@ use crate::{
 
 pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, DoubtedText, How, check_file, checked};
 pub use compare::compared;
+#[cfg(feature = "habitat")]
+pub use export::{Replayed, replayed};
 pub use generate::{Searched, Summary, generate_into};
 pub use perceive::{Extent, Measured, OfDetector, Row, measure_detector, perceive};
 

@@ -210,7 +210,7 @@ fn unused(
     }
 }
 
-fn no_data(name: &str) -> Error {
+pub(crate) fn no_data(name: &str) -> Error {
     let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
     Error::usage(format!("platform {name} needs --data"), format!("give {needs}"))
 }

@@ -54,6 +54,11 @@ impl Journal {
         self.keys.contains(key)
     }
 
+    /// The keys of its lines, in their order.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.keys.iter().map(String::as_str)
+    }
+
     /// How many lines it has.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -31,7 +31,7 @@ pub(crate) use config::{config_of, keep_config, refuse_other_format, table_of};
 pub use config::{continued, is_begun, settings_of};
 pub(crate) use held::{Held, hold};
 pub use journal::{Journal, read_lines};
-pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, text_name};
+pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, name_of_text, text_name};
 pub use world_data::WorldData;
 
 /// A run folder in which only this process works.

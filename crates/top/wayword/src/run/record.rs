@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map as JsonMap, Value};
 use wayword_core::{DVec3, Failure, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
+use wayword_formats::jsonl::Record;
 
 /// A path and what was seen along it: a line of `walks.jsonl`.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -87,6 +88,17 @@ pub fn text_name(style: &str, number: usize) -> String {
 /// The field of a record that has the number of its text.
 const NUMBER: &str = "number";
 
+/// What identifies the text of a record within its item, as part of a name: its style, and its number where the style has
+/// several.
+#[must_use]
+pub fn name_of_text(record: &Record) -> String {
+    let style = &record.instruction.style;
+    match record.extra.get(NUMBER).and_then(Value::as_u64) {
+        Some(number) if number > 0 => format!("{style}-{number}"),
+        _ => style.clone(),
+    }
+}
+
 fn name_of(value: &Value) -> Option<String> {
     let number = value.get(NUMBER).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     Some(text_name(value.get("style")?.as_str()?, number.unwrap_or(0)))
@@ -102,7 +114,7 @@ pub(super) fn parts(key: &str) -> (&str, Option<&str>) {
 }
 
 impl FailedItem {
-    pub(super) fn key_of(value: &Value) -> Option<String> {
+    pub(crate) fn key_of(value: &Value) -> Option<String> {
         Some(value.get("item")?.as_str()?.to_owned())
     }
 }

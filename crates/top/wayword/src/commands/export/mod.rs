@@ -7,6 +7,13 @@ mod highlight;
 mod in_habitat;
 mod items;
 mod splits;
+#[cfg(not(feature = "habitat"))]
+#[path = "no_steps.rs"]
+mod steps;
+#[cfg(feature = "habitat")]
+mod steps;
+#[cfg(feature = "habitat")]
+pub use steps::{Replayed, replayed};
 #[cfg(not(feature = "parquet"))]
 #[path = "no_table.rs"]
 mod table;
@@ -14,7 +21,7 @@ mod table;
 mod table;
 
 use crate::{
-    cli::{AskedWorld, Export, ExportFormat},
+    cli::{AskedSteps, AskedWorld, Export, ExportFormat},
     count::count,
     error::{Error, Exit},
     output::Output,
@@ -67,6 +74,7 @@ pub(super) fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
         ExportFormat::Duet => duet::write(args, out, &records, output)?,
         ExportFormat::Parquet => table::write(args, out, &records, output)?,
         ExportFormat::Hf => table::publish(args, out, &records, output)?,
+        ExportFormat::Steps => return steps::write(args, out, &records, output),
         ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
             one_file(args, format, out, &records, output)?;
         }
@@ -92,7 +100,7 @@ fn asked(args: &Export) -> Result<(ExportFormat, &Path), Error> {
 
 fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), Error> {
     let refused = |problem: String, hint: &str| Err(Error::usage(problem, hint));
-    if !format.bears_all() && args.run.len() > 1 {
+    if !format.takes_several_runs() && args.run.len() > 1 {
         return refused(
             format!("format {format} takes one run only"),
             "merge runs with --format wayword, parquet or hf",
@@ -101,7 +109,7 @@ fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), E
     let splits_itself = format.says_splits() || format == ExportFormat::Wayword;
     if args.val_share.is_some() && !splits_itself {
         let problem = format!("format {format} has no splits within a file");
-        return refused(problem, "use --val-share with --format wayword, rxr, duet, parquet or hf");
+        return refused(problem, "use --val-share with --format wayword, rxr, duet, parquet, hf or steps");
     }
     if let Some(share) = args.val_share.filter(|share| !(0.0..=1.0).contains(share)) {
         return refused(format!("--val-share {share} is not a share"), "give a number from 0 to 1");
@@ -110,11 +118,14 @@ fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), E
         let problem = "--split puts all texts into one split, and --val-share and --format wayword divide them";
         return refused(problem.to_owned(), "give one of the two; for --format wayword, --val-share");
     }
-    if !format.bears_all() && args.style.is_none() {
+    if !format.takes_all_styles() && args.style.is_none() {
         return refused(format!("a file of format {format} has texts of one style only"), "choose it with --style");
     }
     if format != ExportFormat::Duet && (args.tokenizer.is_some() || args.dataset.is_some()) {
         return refused("--tokenizer and --dataset are for --format duet".to_owned(), "leave them out");
+    }
+    if format != ExportFormat::Steps && args.steps != AskedSteps::default() {
+        return refused("the flags of steps are for --format steps".to_owned(), "leave them out");
     }
     Ok(())
 }

@@ -19,7 +19,8 @@ pub(super) fn saved(base: &Base, folder: &FilePath) -> Result<PathBuf, Error> {
         if house.is_dir() {
             continue;
         }
-        let seed = seed_of(scene).ok_or_else(|| Error::usage(format!("scene {scene} is no generated house"), "name data"))?;
+        let seed =
+            seed_of(scene).ok_or_else(|| Error::usage(format!("scene {scene} is no generated house"), "name data"))?;
         // A house that was half written when the program was stopped is written again.
         let unfinished = folder.join(format!(".{scene}"));
         let _ = fs::remove_dir_all(&unfinished);

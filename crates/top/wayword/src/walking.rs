@@ -1,0 +1,104 @@
+//! Scenes in which an agent can take single steps: generated houses and Habitat's scenes, each with its navmesh.
+
+use crate::{error::Error, platforms, settings::Settings};
+use std::sync::Arc;
+use wayword_core::{DVec3, Frame, Gaze, Heading, Image, Platform, PlatformError, Pose, Recent, SceneId};
+use wayword_habitat::{Ground, HabitatOptions, HabitatPlatform, NavMesh, NavMeshSettings, bake::bake, scene::Model};
+use wayword_house::{House, HouseOptions, HousePlatform, generate, seed_of, surfaces};
+
+/// Navmeshes that are kept in memory.
+const READY: usize = 6;
+
+/// The scenes of a run, with their ground.
+pub(crate) struct Scenes {
+    kind: Kind,
+    grounds: Recent<SceneId, Ground>,
+}
+
+enum Kind {
+    Houses(HousePlatform),
+    Habitat(HabitatPlatform),
+}
+
+impl Scenes {
+    /// The scenes of a run, whose pictures have this size in pixels.
+    ///
+    /// # Errors
+    /// When the run's platform has no navmeshes, or its data cannot be opened.
+    pub(crate) fn open(settings: &Settings, [width_px, height_px]: [u32; 2]) -> Result<Self, Error> {
+        let kind = match settings.platform.as_str() {
+            "house" => {
+                Kind::Houses(HousePlatform::new(HouseOptions { width_px, height_px, ..HouseOptions::default() }))
+            }
+            "habitat" => {
+                let options =
+                    HabitatOptions { width_px, height_px, island: settings.island, ..HabitatOptions::default() };
+                let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
+                Kind::Habitat(HabitatPlatform::open(data, options, Arc::new(crate::output::pass_on))?)
+            }
+            other => {
+                let problem = format!("platform {other} has no ground on which single steps can be taken");
+                let hint = "make the run with --platform house or habitat; Matterport3D's buildings are scenes of Habitat too \
+                            (docs/DATA.md)";
+                return Err(Error::usage(problem, hint));
+            }
+        };
+        Ok(Self { kind, grounds: Recent::new(READY) })
+    }
+
+    /// The platform that draws them.
+    pub(crate) fn platform(&self) -> &dyn Platform {
+        match &self.kind {
+            Kind::Houses(houses) => houses,
+            Kind::Habitat(scenes) => scenes,
+        }
+    }
+
+    /// What an agent sees that stands at a place on the floor and looks along a heading.
+    ///
+    /// # Errors
+    /// When there is no such scene, or it cannot be drawn.
+    pub(crate) fn picture(
+        &self,
+        scene: &SceneId,
+        (floor, heading): (DVec3, Heading),
+        eye_m: f64,
+        horizontal_fov_rad: f64,
+    ) -> Result<Arc<Image>, PlatformError> {
+        let from = Frame { pose: Pose::level(floor + DVec3::Z * eye_m, heading), viewpoint: None, level: None };
+        let view = self.platform().look(scene, &from, Gaze { heading, horizontal_fov_rad })?;
+        view.image.ok_or_else(|| PlatformError::NotDrawn { scene: scene.clone(), reason: "it has no picture".into() })
+    }
+
+    /// The ground of a scene.
+    ///
+    /// # Errors
+    /// When there is no such scene, or its files cannot be read.
+    pub(crate) fn ground(&self, scene: &SceneId) -> Result<Arc<Ground>, PlatformError> {
+        self.grounds.get_or_make(scene.clone(), || {
+            let navmesh = match &self.kind {
+                Kind::Habitat(scenes) => scenes.navmesh(scene)?,
+                Kind::Houses(houses) => match seed_of(scene.as_str()) {
+                    Some(seed) => navmesh(&generate(seed))
+                        .map_err(|reason| PlatformError::NotDrawn { scene: scene.clone(), reason })?,
+                    // The platform knows what to say of a scene that it does not have.
+                    None => return houses.graph(scene).and(Err(no_house(scene))),
+                },
+            };
+            Ok(Ground::new(&navmesh))
+        })
+    }
+}
+
+fn no_house(scene: &SceneId) -> PlatformError {
+    PlatformError::NotDrawn { scene: scene.clone(), reason: "it is no generated house".to_owned() }
+}
+
+/// The navmesh of a house, baked from its surfaces as Habitat bakes them.
+///
+/// # Errors
+/// When it cannot be baked; with the reason.
+pub(crate) fn navmesh(house: &House) -> Result<NavMesh, String> {
+    let model = Model { meshes: surfaces(house), ..Model::default() };
+    bake(&model, &NavMeshSettings::default()).map_err(|error| error.to_string())
+}
