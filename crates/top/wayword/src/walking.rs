@@ -2,8 +2,10 @@
 
 use crate::{error::Error, platforms, settings::Settings};
 use std::sync::Arc;
-use wayword_core::{DVec3, Frame, Gaze, Heading, Image, Platform, PlatformError, Pose, Recent, SceneId};
-use wayword_habitat::{Ground, HabitatOptions, HabitatPlatform, NavMesh, NavMeshSettings, bake::bake, scene::Model};
+use wayword_core::{DVec3, Frame, Gaze, Heading, Image, Path, Platform, PlatformError, Pose, Recent, SceneId};
+use wayword_habitat::{
+    Ground, HabitatOptions, HabitatPlatform, NavMesh, NavMeshSettings, axes::EYE_M, bake::bake, scene::Model,
+};
 use wayword_house::{House, HouseOptions, HousePlatform, generate, seed_of, surfaces};
 
 /// Navmeshes that are kept in memory.
@@ -21,15 +23,19 @@ enum Kind {
 }
 
 impl Scenes {
+    /// Generated houses, whose pictures have this size in pixels.
+    pub(crate) fn houses([width_px, height_px]: [u32; 2]) -> Self {
+        let houses = HousePlatform::new(HouseOptions { width_px, height_px, ..HouseOptions::default() });
+        Self { kind: Kind::Houses(houses), grounds: Recent::new(READY) }
+    }
+
     /// The scenes of a run, whose pictures have this size in pixels.
     ///
     /// # Errors
     /// When the run's platform has no navmeshes, or its data cannot be opened.
     pub(crate) fn open(settings: &Settings, [width_px, height_px]: [u32; 2]) -> Result<Self, Error> {
         let kind = match settings.platform.as_str() {
-            "house" => {
-                Kind::Houses(HousePlatform::new(HouseOptions { width_px, height_px, ..HouseOptions::default() }))
-            }
+            "house" => return Ok(Self::houses([width_px, height_px])),
             "habitat" => {
                 let options =
                     HabitatOptions { width_px, height_px, island: settings.island, ..HabitatOptions::default() };
@@ -92,6 +98,11 @@ impl Scenes {
 
 fn no_house(scene: &SceneId) -> PlatformError {
     PlatformError::NotDrawn { scene: scene.clone(), reason: "it is no generated house".to_owned() }
+}
+
+/// The places on the floor under the frames of a path.
+pub(crate) fn feet(path: &Path) -> Vec<DVec3> {
+    path.frames.iter().map(|frame| frame.pose.position - DVec3::Z * EYE_M).collect()
 }
 
 /// The navmesh of a house, baked from its surfaces as Habitat bakes them.

@@ -5,6 +5,7 @@ mod compare;
 mod doctor;
 mod evaluate;
 mod export;
+mod house;
 mod ledger;
 mod models;
 mod perceive;
@@ -24,6 +25,7 @@ pub use compare::{AskedPrior, Compare, PICTURES, SuccessRule, SwapName};
 pub use doctor::Doctor;
 pub use evaluate::Evaluate;
 pub use export::{AgentDataset, Export, ExportFormat};
+pub use house::House;
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
@@ -116,7 +118,7 @@ pub enum Command {
     Platforms,
     /// Draw a panorama, what is seen along a path, or a map.
     View(View),
-    /// Save a generated house as glTF with its navigation data, and as a labelled scene for AI Habitat.
+    /// Save generated houses as a set of scenes that AI Habitat reads, with episodes that its agents walk.
     House(House),
     /// Print shell completions.
     Completions {
@@ -199,18 +201,6 @@ pub struct Report {
     /// report.html in the run folder]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-}
-
-/// `wayword house`.
-#[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  wayword house --seed 7 --out houses")]
-pub struct House {
-    /// Seed of the house.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// Folder for house2-SEED.glb, its navigation data and the files that Habitat needs.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
 }
 
 #[cfg(test)]

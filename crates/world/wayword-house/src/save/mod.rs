@@ -57,15 +57,17 @@ pub struct Saved {
     pub navigation: PathBuf,
     /// `house2-SEED.stage_config.json`: names the other files for AI Habitat and for the platform `habitat`.
     pub stage: PathBuf,
+    /// `house2-SEED.navmesh`: where one can walk, for AI Habitat; `None` if it was not given.
+    pub navmesh: Option<PathBuf>,
     /// `house2-SEED.semantic.glb` and `house2-SEED.semantic.txt`: which object each surface belongs to.
     pub semantics: [PathBuf; 2],
 }
 
-/// Writes a house's files into a folder that exists.
+/// Writes a house's files into a folder that exists. `navmesh` has the bytes of the house's navmesh, as Habitat reads them.
 ///
 /// # Errors
 /// When a file cannot be written or the house cannot be encoded.
-pub fn save(house: &House, folder: &Path) -> Result<Saved, SaveError> {
+pub fn save(house: &House, folder: &Path, navmesh: Option<&[u8]>) -> Result<Saved, SaveError> {
     let ground = Ground::of(house);
     let graph = viewpoint_graph(house, &ground)?;
     let name = scene_name(house.seed);
@@ -79,7 +81,11 @@ pub fn save(house: &House, folder: &Path) -> Result<Saved, SaveError> {
     Ok(Saved {
         model: write("glb", &glb(house)?)?,
         navigation: write("navigation.json", &serde_json::to_vec(&navigation(house, &ground, &graph)?)?)?,
-        stage: write("stage_config.json", &serde_json::to_vec_pretty(&semantic::stage_config(&name))?)?,
+        stage: write(
+            "stage_config.json",
+            &serde_json::to_vec_pretty(&semantic::stage_config(&name, navmesh.is_some()))?,
+        )?,
+        navmesh: navmesh.map(|bytes| write("navmesh", bytes)).transpose()?,
         semantics: [
             write("semantic.glb", &semantic_glb(house)?)?,
             write("semantic.txt", semantic_txt(house).as_bytes())?,

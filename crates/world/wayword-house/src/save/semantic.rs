@@ -56,14 +56,20 @@ pub fn semantic_txt(house: &House) -> String {
 }
 
 /// A `.stage_config.json` for files of this name. It says that y is up, as in glTF, because Habitat does not assume so.
-pub(super) fn stage_config(name: &str) -> Value {
-    json!({
+pub(super) fn stage_config(name: &str, has_navmesh: bool) -> Value {
+    let mut config = json!({
         "render_asset": format!("{name}.glb"),
         "semantic_asset": format!("{name}.semantic.glb"),
+        "semantic_descriptor_filename": format!("{name}.semantic.txt"),
+        "has_semantic_textures": false,
         "up": [0.0, 1.0, 0.0],
         "front": [0.0, 0.0, -1.0],
         "units_to_meters": 1.0,
-    })
+    });
+    if has_navmesh {
+        config["nav_asset"] = json!(format!("{name}.navmesh"));
+    }
+    config
 }
 
 /// The colour of an object's number. Multiplying by an odd factor gives each of the 2^24 numbers its own colour.

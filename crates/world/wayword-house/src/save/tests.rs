@@ -57,7 +57,7 @@ fn north_is_minus_z_and_up_is_y_in_gltf() {
 fn navigation_data_names_rooms_objects_and_ways() {
     let folder = tempfile::tempdir().unwrap();
     let house = generate(4);
-    let Saved { model: looks, navigation: ways, .. } = save(&house, folder.path()).unwrap();
+    let Saved { model: looks, navigation: ways, .. } = save(&house, folder.path(), None).unwrap();
     assert!(looks.ends_with("house2-4.glb") && looks.metadata().unwrap().len() > 100_000);
     let read: serde_json::Value = serde_json::from_slice(&std::fs::read(ways).unwrap()).unwrap();
     assert_eq!(read["rooms"].as_array().unwrap().len(), house.rooms.len());
@@ -95,6 +95,6 @@ fn every_object_has_a_colour_of_its_own_and_every_vertex_that_of_its_object() {
 
 #[test]
 fn a_folder_that_is_not_there_is_named() {
-    let error = save(&generate(4), std::path::Path::new("/nowhere/at all")).unwrap_err().to_string();
+    let error = save(&generate(4), std::path::Path::new("/nowhere/at all"), None).unwrap_err().to_string();
     assert!(error.contains("/nowhere/at all/house2-4.glb"), "{error}");
 }

@@ -5,6 +5,7 @@ use crate::{error::Error, platforms, run::settings_of};
 use std::path::{Path, PathBuf};
 use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
 use wayword_formats::{Episode, InHabitat, jsonl::Record};
+use wayword_house::seed_of;
 
 /// Where habitat-lab keeps scenes: `scene_id` counts from there.
 const SCENES: &str = "scene_datasets";
@@ -111,10 +112,10 @@ fn below_scenes(file: &Path, data: &Path) -> String {
 
 /// A generated house, which Habitat can show once it is saved.
 fn house(scene: &SceneId) -> InHabitat {
-    let seed = scene.as_str().strip_prefix("house2-").unwrap_or_default();
+    let seed = seed_of(scene.as_str()).unwrap_or_default();
     InHabitat {
         scene_id: Some(format!("house/{scene}/{scene}.glb")),
-        scene_needs: Some(format!("save the house: wayword house --seed {seed} --out SCENES/house/{scene}")),
+        scene_needs: Some(format!("save the house: wayword house --seed {seed} --out SCENES/house")),
         geodesic_m: None,
     }
 }

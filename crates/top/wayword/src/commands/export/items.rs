@@ -27,7 +27,12 @@ fn bears_provenance(format: Format) -> bool {
 }
 
 /// The records as items, one for each.
-pub(super) fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &Output) -> Vec<Episode> {
+pub(in super::super) fn episodes(
+    format: Format,
+    runs: &[PathBuf],
+    records: &[Record],
+    output: &Output,
+) -> Vec<Episode> {
     let mut episodes: Vec<Episode> = records.iter().map(|record| episode(record, bears_provenance(format))).collect();
     if let (Format::Vlnce, [run]) = (format, runs) {
         let mut world = World::of(run, records);
@@ -42,7 +47,7 @@ pub(super) fn episodes(format: Format, runs: &[PathBuf], records: &[Record], out
 }
 
 /// Writes one of the field's formats, and a file of provenance beside it if the format's items have no place for that.
-pub(super) fn write(
+pub(in super::super) fn write(
     format: Format,
     file: &Path,
     records: &[Record],

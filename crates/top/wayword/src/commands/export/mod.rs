@@ -5,7 +5,7 @@ mod card;
 mod duet;
 mod highlight;
 mod in_habitat;
-mod items;
+pub(super) mod items;
 mod splits;
 #[cfg(not(feature = "habitat"))]
 #[path = "no_steps.rs"]

@@ -4,15 +4,15 @@ use super::{parts::parts, settings::Steps};
 use crate::{
     error::Error,
     run::{FailedItem, name_of_text},
-    walking::Scenes,
+    walking::{Scenes, feet},
 };
 use std::collections::BTreeMap;
-use wayword_core::{DVec3, Failure, Heading, Path};
+use wayword_core::{Failure, Heading, Path};
 use wayword_formats::{
     jsonl::Record,
     trajectories::{Place, Told, Trajectory, as_written},
 };
-use wayword_habitat::{axes::EYE_M, walk::follow};
+use wayword_habitat::walk::follow;
 
 /// A walk, and the texts about it.
 pub(super) struct Walk<'a> {
@@ -61,9 +61,8 @@ pub(super) fn trajectory(
         Err(error) if error.failure() == Failure::Lost => return Err(error.into()),
         Err(error) => return Ok(Err(failed(error.failure(), error.to_string()))),
     };
-    let feet: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position - DVec3::Z * EYE_M).collect();
     let heading = path.frames.first().map_or(Heading::NORTH, |frame| frame.pose.heading);
-    let walked = match follow(&ground, &feet, heading, gait, steps.tolerance_m) {
+    let walked = match follow(&ground, &feet(path), heading, gait, steps.tolerance_m) {
         Ok(walked) => walked,
         Err(astray) => return Ok(Err(failed(Failure::Broken, astray.to_string()))),
     };

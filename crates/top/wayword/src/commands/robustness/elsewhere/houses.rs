@@ -25,7 +25,7 @@ pub(super) fn saved(base: &Base, folder: &FilePath) -> Result<PathBuf, Error> {
         let unfinished = folder.join(format!(".{scene}"));
         let _ = fs::remove_dir_all(&unfinished);
         fs::create_dir_all(&unfinished).map_err(Error::io(&unfinished, "make the folder"))?;
-        save(&generate(seed), &unfinished)?;
+        save(&generate(seed), &unfinished, None)?;
         fs::rename(&unfinished, &house).map_err(Error::io(&house, "name the folder"))?;
     }
     Ok(folder.to_owned())

@@ -22,7 +22,7 @@ struct Count {
 
 fn read_back(seed: u64) -> Semantics {
     let folder = tempfile::tempdir().unwrap();
-    let saved = save(&generate(seed), folder.path()).unwrap();
+    let saved = save(&generate(seed), folder.path(), None).unwrap();
     let [mesh, text] = saved.semantics;
     let files = SemanticFiles { painted: Some((mesh, text)), numbered: None };
     load(&files, Stage::of(&saved.stage).unwrap().habitat_from_asset).unwrap().unwrap()

@@ -1,0 +1,170 @@
+//! `wayword house`: generated houses as a set of scenes that Habitat reads, with episodes that its agents walk.
+
+#[cfg(feature = "habitat")]
+mod episodes;
+
+use crate::{
+    cli::House,
+    count::count,
+    error::{Error, Exit},
+    output::Output,
+    run::file,
+};
+use serde::Serialize;
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+use wayword_formats::jsonl::{self, Record};
+use wayword_house::{Saved, generate, save, scene_name, seed_of};
+
+/// The set of scenes, which programs give to Habitat as its scene dataset.
+const SCENE_SET: &str = "houses.scene_dataset_config.json";
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct Written {
+    /// The files of each house.
+    houses: Vec<Saved>,
+    scene_set: PathBuf,
+    /// VLN-CE's files and habitat-lab's configuration, if there are episodes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    episodes: Option<Episodes>,
+}
+
+/// The episodes of a set of houses.
+#[derive(Debug, Serialize)]
+struct Episodes {
+    episodes: usize,
+    /// VLN-CE's episodes, and what an agent does in each.
+    files: [PathBuf; 2],
+    /// habitat-lab's configuration, which walks them.
+    config: PathBuf,
+    /// Walks that cannot be taken in VLN-CE's actions, with the reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    failed: Vec<String>,
+}
+
+pub(super) fn run(args: &House, output: &Output) -> Result<Exit, Error> {
+    let told = args.run.as_deref().map(|run| records(run, args.style.as_deref())).transpose()?;
+    let seeds = match &told {
+        Some(records) => seeds_of(records)?,
+        None => (args.seed..args.seed.saturating_add(args.houses)).collect(),
+    };
+    if seeds.is_empty() {
+        return Err(Error::usage("--houses 0", "give the number of houses, as in --houses 20"));
+    }
+    let bar = output.progress(seeds.len(), "houses");
+    let mut houses = Vec::with_capacity(seeds.len());
+    for seed in &seeds {
+        houses.push(house(*seed, &args.out)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    let scene_set = args.out.join(SCENE_SET);
+    let set = serde_json::json!({ "stages": { "paths": { ".json": [format!("{}*", scene_name(0).trim_end_matches('0'))] } } });
+    fs::write(&scene_set, format!("{set:#}\n")).map_err(Error::io(&scene_set, "write"))?;
+    let episodes = episodes(args, &seeds, told, output)?;
+    let written = Written { houses, scene_set, episodes };
+    output.data(&written, text(&written, &args.out));
+    Ok(if written.episodes.as_ref().is_some_and(|episodes| !episodes.failed.is_empty()) {
+        Exit::WithLoss
+    } else {
+        Exit::Done
+    })
+}
+
+/// Writes the files of a house into a folder of its own.
+fn house(seed: u64, out: &Path) -> Result<Saved, Error> {
+    let (house, folder) = (generate(seed), out.join(scene_name(seed)));
+    fs::create_dir_all(&folder).map_err(Error::io(&folder, "make the folder"))?;
+    Ok(save(&house, &folder, navmesh(&house)?.as_deref())?)
+}
+
+#[cfg(feature = "habitat")]
+fn navmesh(house: &wayword_house::House) -> Result<Option<Vec<u8>>, Error> {
+    let baked = crate::walking::navmesh(house);
+    let baked =
+        baked.map_err(|reason| Error::usage(format!("house {}: {reason}", house.seed), "report this as a bug"))?;
+    Ok(Some(baked.to_bytes()))
+}
+
+#[cfg(not(feature = "habitat"))]
+fn navmesh(_house: &wayword_house::House) -> Result<Option<Vec<u8>>, Error> {
+    Ok(None)
+}
+
+/// The records of a run, of one style.
+fn records(run: &Path, style: Option<&str>) -> Result<Vec<Record>, Error> {
+    let mut records = jsonl::read(&run.join(file::INSTRUCTIONS))?;
+    let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
+    records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
+    let listed = styles.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
+    match (records.is_empty(), style) {
+        (true, _) => {
+            Err(Error::usage(format!("{}: no such instruction", run.display()), format!("its styles: {listed}")))
+        }
+        (false, None) if styles.len() > 1 => {
+            let problem = format!("{} has texts of several styles, and an episode has one text", run.display());
+            Err(Error::usage(problem, format!("choose one with --style: {listed}")))
+        }
+        _ => Ok(records),
+    }
+}
+
+/// The houses of records.
+fn seeds_of(records: &[Record]) -> Result<Vec<u64>, Error> {
+    let seeds = records.iter().map(|record| {
+        seed_of(record.path.scene.as_str()).ok_or_else(|| {
+            let problem = format!("scene {} is no generated house", record.path.scene);
+            Error::usage(problem, "give a run of platform house")
+        })
+    });
+    Ok(seeds.collect::<Result<BTreeSet<_>, _>>()?.into_iter().collect())
+}
+
+#[cfg(feature = "habitat")]
+fn episodes(
+    args: &House,
+    seeds: &[u64],
+    told: Option<Vec<Record>>,
+    output: &Output,
+) -> Result<Option<Episodes>, Error> {
+    let records = match told {
+        Some(records) => records,
+        None if args.paths == 0 => return Ok(None),
+        None => episodes::made(args, seeds, output)?,
+    };
+    episodes::write(&args.out, &records, output).map(Some)
+}
+
+#[cfg(not(feature = "habitat"))]
+fn episodes(
+    args: &House,
+    _seeds: &[u64],
+    told: Option<Vec<Record>>,
+    output: &Output,
+) -> Result<Option<Episodes>, Error> {
+    if told.is_some() || args.paths > 0 {
+        output.say("no navmeshes and no episodes are written, because this build has no platform habitat");
+    }
+    Ok(None)
+}
+
+fn text(written: &Written, out: &Path) -> String {
+    let houses = format!("{} in {}, listed in {SCENE_SET}", count(written.houses.len(), "house"), out.display());
+    let Some(episodes) = &written.episodes else { return houses };
+    let mut text = format!(
+        "{houses}\n{} in {}, their actions in {}\nhabitat-lab walks them with {}",
+        count(episodes.episodes, "episode"),
+        episodes.files[0].display(),
+        episodes.files[1].display(),
+        episodes.config.display()
+    );
+    for failed in &episodes.failed {
+        text.push_str("\nleft out: ");
+        text.push_str(failed);
+    }
+    text
+}
