@@ -113,10 +113,10 @@ fn a_report_is_written_for_a_run_and_refused_for_what_is_none() {
 #[test]
 fn a_house_is_saved_with_its_navigation_data() {
     let building = Building::new();
-    let ran = building.wayword(&["house", "--seed", "2", "--out", "houses"]);
+    let ran = building.wayword(&["house", "--seed", "2", "--paths", "0", "--out", "houses"]);
     assert_eq!(ran.code, Some(0), "{ran:?}");
-    assert!(fs::read(building.path("houses/house2-2.glb")).unwrap().starts_with(b"glTF"));
-    let navigation = fs::read(building.path("houses/house2-2.navigation.json")).unwrap();
+    assert!(fs::read(building.path("houses/house2-2/house2-2.glb")).unwrap().starts_with(b"glTF"));
+    let navigation = fs::read(building.path("houses/house2-2/house2-2.navigation.json")).unwrap();
     assert!(serde_json::from_slice::<Value>(&navigation).unwrap().is_object());
 }
 

@@ -9,7 +9,7 @@ use common::Building;
 fn houses(building: &Building) {
     for (out, scene) in [("a", "house2-3"), ("b", "house2-4")] {
         let arguments = ["generate", "--paths", "1", "--metres", "5..7", "--scan", scene, "--seed"];
-        let ran = building.wayword(&[&arguments[..], &[&scene[6..], "--out", out]].concat());
+        let ran = building.wayword(&[&arguments[..], &[&scene[7..], "--out", out]].concat());
         assert_eq!(ran.code, Some(0), "{ran:?}");
     }
 }

@@ -18,8 +18,8 @@ use wayword_render::Mesh;
 
 /// A house saved as a scene of Habitat: its stage.
 fn house(building: &Building) -> PathBuf {
-    let saved = building.wayword(&["house", "--seed", "2", "--out", "scenes/own/house2-2", "--json"]).json();
-    PathBuf::from(saved["stage"].as_str().unwrap())
+    let saved = building.wayword(&["house", "--seed", "2", "--paths", "0", "--out", "scenes/own", "--json"]).json();
+    PathBuf::from(saved["houses"][0]["stage"].as_str().unwrap())
 }
 
 fn run(building: &Building, data: &str, out: &str, more: &[&str]) -> common::Ran {

@@ -71,8 +71,8 @@ fn an_executable_that_answers_can_be_walked_through() {
 #[test]
 fn a_house_saved_for_habitat_can_be_walked_through_as_one_of_its_scenes() {
     let building = Building::new();
-    let saved = building.wayword(&["house", "--seed", "2", "--out", "houses", "--json"]).json();
-    let stage = saved["stage"].as_str().unwrap();
+    let saved = building.wayword(&["house", "--seed", "2", "--paths", "0", "--out", "houses", "--json"]).json();
+    let stage = saved["houses"][0]["stage"].as_str().unwrap();
     let world =
         ["generate", "--platform", "habitat", "--data", stage, "--paths", "2", "--style", "r2r", "--out", "run"];
     let ran = building.wayword(&world);

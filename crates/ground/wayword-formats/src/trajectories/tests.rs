@@ -53,6 +53,12 @@ fn what_is_written_is_read_with_its_pictures() {
     shard.add("000000", &trajectory("other", packed.pictures.clone()), &views("other")).unwrap();
     shard.add(&key, &packed, &views("b")).unwrap();
     shard.finish().unwrap();
+    // As WebDataset finds them: the files of a sample together, named before the first point by its key.
+    let mut tar = tar::Archive::new(std::fs::File::open(folder.path().join("shards/000000.tar")).unwrap());
+    let names = tar.entries().unwrap().map(|entry| entry.unwrap().path().unwrap().display().to_string());
+    let expected = ["json", "0000.jpg", "0001.jpg", "0002.jpg"];
+    let expected = ["000000", "000001"].iter().flat_map(|key| expected.map(|name| format!("{key}.{name}")));
+    assert_eq!(names.collect::<Vec<_>>(), expected.collect::<Vec<_>>());
     let file = folder.path().join("trajectories.jsonl");
     write(&file, &[apart.clone(), packed.clone()]).unwrap();
     let found = read(&file).unwrap();
