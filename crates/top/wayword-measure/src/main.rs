@@ -14,6 +14,7 @@ mod eye;
 mod fit_evidence;
 mod fit_follower;
 mod found;
+mod house_views;
 mod judged;
 mod key;
 #[cfg(test)]
@@ -190,6 +191,8 @@ enum What {
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
+    /// Count the views along walks through generated houses of which half is bare wall, and measure how long a view takes.
+    HouseViews(house_views::Flags),
     /// Take the walks of an export of steps again: whether their actions lead to their ends, and whether their pictures are those
     /// of their poses.
     Steps(steps::Flags),
@@ -266,6 +269,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Parity(flags) => parity::measure(&flags, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
+        What::HouseViews(flags) => house_views::measure(&flags, output),
         What::Steps(flags) => steps::measure(&flags, output),
         What::People(flags) => people::measure(flags, output),
         What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
