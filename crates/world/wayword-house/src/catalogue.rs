@@ -114,6 +114,10 @@ catalogue! {
     Car "car" [178 400 146] +- 0 "metal" [Red Blue Silver White Green];
     Workbench "workbench" [150 60 92] +- 10 "wood" [LightBrown Brown];
     MetalShelf "metal shelf" [110 45 180] +- 10 "metal" [Grey Silver];
+    ClosetDoor "closet door" [160 6 212] +- 0 "wood" [White LightBrown Brown Grey];
+    WallBookshelf "bookshelf" [120 10 208] +- 0 "wood" [White Brown LightBrown DarkBrown];
+    Radiator "radiator" [100 9 58] +- 0 "metal" [White];
+    Tapestry "tapestry" [140 4 170] +- 0 "wool" [Red Blue Teal Green Orange Purple];
     Bicycle "bicycle" [168 50 104] +- 0 "metal" [Red Blue Green Black];
 }
 
@@ -137,6 +141,18 @@ impl FurnitureKind {
 
     /// Whether it is slim and hangs on a wall, so that it takes no floor.
     pub(crate) fn is_slim_on_wall(self) -> bool {
-        matches!(self, Self::Painting | Self::Mirror | Self::Clock | Self::Whiteboard | Self::Towel | Self::Curtain)
+        matches!(
+            self,
+            Self::Painting
+                | Self::Mirror
+                | Self::Clock
+                | Self::Whiteboard
+                | Self::Towel
+                | Self::Curtain
+                | Self::ClosetDoor
+                | Self::WallBookshelf
+                | Self::Radiator
+                | Self::Tapestry
+        )
     }
 }

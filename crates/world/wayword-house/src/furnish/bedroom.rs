@@ -38,9 +38,6 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
     }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
-    for _ in 0..3 {
-        room.hang(K::Painting, 130);
-    }
     room.curtains();
 }
 

@@ -30,9 +30,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     }
     breakfast(room);
     room.stand_anywhere(K::Plant, Along::Ends, 0);
-    room.hang(K::Clock, 180);
     room.hang(K::Shelf, 140);
-    room.hang(K::Painting, 130);
 }
 
 /// Another stretch of worktop with a cupboard over it.

@@ -31,12 +31,6 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     room.stand_anywhere(K::Plant, Along::Ends, 0);
     room.stand_anywhere(K::FloorLamp, Along::Ends, 0);
     room.stand_anywhere(K::Plant, Along::Ends, 0);
-    for _ in 0..3 {
-        room.hang(K::Painting, 130);
-    }
-    if room.dice.chance(50) {
-        room.hang(K::Clock, 175);
-    }
     room.curtains();
 }
 

@@ -3,6 +3,7 @@
 mod bathroom;
 mod bedroom;
 mod dining;
+mod dressing;
 mod kitchen;
 mod living;
 mod office;
@@ -26,6 +27,7 @@ pub(super) struct Taste {
     pub(super) wood: Colour,
     pub(super) kitchen: Colour,
     pub(super) curtain: Colour,
+    pub(super) closet: Colour,
 }
 
 /// All furniture of a house. Each room has its own dice, so that the choices in one room do not change the next.
@@ -35,11 +37,16 @@ pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
         wood: dice.pick([Colour::Brown, Colour::LightBrown, Colour::DarkBrown, Colour::White]),
         kitchen: dice.pick([Colour::White, Colour::Grey, Colour::Blue, Colour::Green, Colour::LightBrown]),
         curtain: dice.pick([Colour::Beige, Colour::Grey, Colour::Blue, Colour::White]),
+        closet: dice.pick([Colour::White, Colour::White, Colour::LightBrown, Colour::Brown, Colour::Grey]),
     };
     let mut pieces = Vec::new();
     for index in 0..layout.rooms.len() {
         let mut room = Furnisher::new(seed, layout, index, taste);
         furnish_room(&mut room, layout.rooms[index].kind);
+        dressing::dress(&mut room, layout.rooms[index].kind);
+        if let Some(stairs) = layout.stairs.as_ref().filter(|stairs| stairs.room == index) {
+            dressing::dress_stairs(&mut room, stairs);
+        }
         pieces.extend(room.into_pieces());
     }
     for (id, piece) in (layout.next_id..).zip(&mut pieces) {

@@ -26,9 +26,5 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     room.lay(K::Rug, centre, [size[0] - 60, size[1] - 40, size[2]], Wall::North);
     room.stand_anywhere(K::Plant, Along::Ends, 0);
     room.hang(K::Whiteboard, 110);
-    for _ in 0..2 {
-        room.hang(K::Painting, 130);
-    }
-    room.hang(K::Clock, 180);
     room.curtains();
 }

@@ -22,10 +22,6 @@ pub(super) fn hallway(room: &mut Furnisher<'_>) {
             room.hang_over(table, K::Mirror, 20);
         }
     }
-    for _ in 0..5 {
-        room.hang(K::Painting, 130);
-    }
-    room.hang(K::Clock, 170);
     room.stand_anywhere(K::Plant, Along::Ends, 0);
 }
 
@@ -56,7 +52,6 @@ pub(super) fn entryway(room: &mut Furnisher<'_>) {
         room.lay(K::DoorMat, place, mat, wall);
     }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
-    room.hang(K::Painting, 140);
 }
 
 pub(super) fn closet(room: &mut Furnisher<'_>) {

@@ -11,11 +11,11 @@ fn size(kind: RoomKind) -> Option<(i32, i32, i32)> {
     match kind {
         RoomKind::Closet | RoomKind::Garage => None,
         RoomKind::Bathroom | RoomKind::LaundryRoom => Some((70, 135, 215)),
-        RoomKind::Kitchen => Some((120, 115, 215)),
-        RoomKind::LivingRoom => Some((180, 60, 220)),
-        RoomKind::Staircase => Some((80, 250, 370)),
-        RoomKind::Hallway | RoomKind::Entryway => Some((70, 100, 215)),
-        _ => Some((140, 90, 215)),
+        RoomKind::Kitchen => Some((140, 115, 220)),
+        RoomKind::LivingRoom => Some((210, 40, 225)),
+        RoomKind::Staircase => Some((160, 215, 420)),
+        RoomKind::Hallway | RoomKind::Entryway => Some((90, 60, 218)),
+        _ => Some((160, 70, 220)),
     }
 }
 
@@ -64,7 +64,7 @@ fn spans(plan: &Plan, rooms: &[Room], index: usize, wall: Wall, width: i32) -> V
         from = from.max(end);
     }
     free.push((from, edge.to));
-    let per_window = width + 110;
+    let per_window = width + 90;
     free.into_iter()
         .flat_map(|(from, to)| {
             let count = ((to - from) / per_window).clamp(0, 3);

@@ -27,6 +27,40 @@ pub(super) fn painting(look: &Look) -> Shape {
     shape
 }
 
+/// A woven hanging on a rod.
+pub(super) fn tapestry(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let (hw, hd) = look.half();
+    let rod = Surface::wood(Colour::DarkBrown);
+    shape.rod(rod, Vec3::new(-hw, 0.0, look.h - 0.02), Vec3::new(hw, 0.0, look.h - 0.02), 0.016);
+    let cloth = Surface::new(Pattern::Ornament, look.colour.rgb());
+    let (x, low) = ([-hw + 0.04, hw - 0.04], 0.07);
+    shape.block(cloth.shade(0.9), x, [-hd + 0.012, hd], [low, look.h - 0.02]);
+    let size = (Vec3::X * (x[1] - x[0]), Vec3::Z * (look.h - 0.02 - low));
+    shape.picture(cloth, Vec3::new(x[0], -hd + 0.008, low), size.0, size.1);
+    let tassels = ((x[1] - x[0]) / 0.06) as usize;
+    for tassel in 0..tassels {
+        let at = x[0] + 0.06 * tassel as f32 + 0.02;
+        shape.block(cloth.shade(0.8), [at, at + 0.02], [-hd + 0.008, hd], [0.0, low]);
+    }
+    shape
+}
+
+/// Ribs between two pipes.
+pub(super) fn radiator(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), white) = (look.half(), Surface::metal(look.colour));
+    for z in [0.03, look.h - 0.07] {
+        shape.block(white.shade(0.9), [-hw, hw], [-hd + 0.02, hd], [z, z + 0.04]);
+    }
+    let ribs = (look.w / 0.06) as usize;
+    for rib in 0..ribs {
+        let x = -hw + look.w * (rib as f32 + 0.5) / ribs as f32;
+        shape.soft(white, [x - 0.021, x + 0.021], [-hd, hd], [0.0, look.h], 0.015);
+    }
+    shape
+}
+
 /// The painting whose main colour is the piece's colour.
 fn art_of(colour: Colour) -> u8 {
     let order = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Red, Colour::Yellow, Colour::Purple];

@@ -131,6 +131,29 @@ pub(super) fn wardrobe(look: &Look) -> Shape {
     shape
 }
 
+/// The doors of a closet that is built into the wall: panels in a frame.
+pub(super) fn closet_door(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    let frame = Surface::plain([242, 241, 238]);
+    shape.block(frame, [-hw, -hw + 0.05], [-hd, hd], [0.0, look.h]);
+    shape.block(frame, [hw - 0.05, hw], [-hd, hd], [0.0, look.h]);
+    shape.block(frame, [-hw, hw], [-hd, hd], [look.h - 0.06, look.h]);
+    let leaves = if look.w > 1.5 { 4 } else { 2 };
+    let wide = (look.w - 0.1) / leaves as f32;
+    let knob = Surface::metal(if look.colour == Colour::White { Colour::DarkGrey } else { Colour::Gold });
+    for leaf in 0..leaves {
+        let x = -hw + 0.05 + wide * leaf as f32;
+        shape.block(wood.shade(0.94), [x + 0.004, x + wide - 0.004], [-hd + 0.02, hd], [0.02, look.h - 0.06]);
+        for (low, high) in [(0.14, 0.95), (1.05, look.h - 0.18)] {
+            shape.block(wood, [x + 0.08, x + wide - 0.08], [-hd + 0.008, -hd + 0.02], [low, high]);
+        }
+        let at = if leaf % 2 == 0 { x + wide - 0.05 } else { x + 0.05 };
+        shape.ball(knob, Vec3::new(at, -hd + 0.005, 1.0), 0.018);
+    }
+    shape
+}
+
 /// An open rack with shoes on it.
 pub(super) fn shoe_rack(look: &Look) -> Shape {
     let mut shape = Shape::default();
