@@ -43,6 +43,7 @@ pub mod team;
 mod terms;
 mod text_file;
 mod texts;
+mod usable;
 
 use clap::Parser;
 use cli::Cli;
