@@ -6,7 +6,11 @@ use crate::{
 };
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
-use wayword::{follow::KnownScenes, meant::MeantWalk, platforms::{self, Place}};
+use wayword::{
+    follow::KnownScenes,
+    meant::MeantWalk,
+    platforms::{self, Place},
+};
 use wayword_core::{Heading, Platform, SceneId, ViewpointId};
 
 /// The scenes of a platform, each surveyed when it is first asked for.

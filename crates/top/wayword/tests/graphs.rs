@@ -12,7 +12,8 @@ use common::{
 };
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use wayword_core::DVec3;
+use wayword_core::{DVec3, SceneId};
+use wayword_formats::OfficialSplit;
 
 /// Name of the scene that is numbered as HM3D's are.
 const NUMBERED: &str = "00800-AbCdEfGhIjK";
@@ -138,6 +139,12 @@ fn doctor_lists_what_each_scene_has_and_lacks() {
     );
     assert!(text.contains("ok       scenes: 2 of 6 scenes can be used"), "{text}");
     assert!(text.contains("platform habitat: "), "{text}");
+    let over_navmeshes = building.wayword(&["doctor", "--platform", "habitat", "--data", "scenes", "--scenes"]);
+    assert!(
+        over_navmeshes.out.contains("warning  scene flat02: no navmesh beside it, so one is baked"),
+        "{over_navmeshes:?}"
+    );
+    assert!(over_navmeshes.out.contains("ok       scenes: 4 of 5 scenes can be used"), "{over_navmeshes:?}");
     let other = building.wayword(&["doctor", "--scenes"]);
     assert!(other.out.contains("the scenes of platform house cannot be examined"), "{other:?}");
 }
@@ -160,6 +167,8 @@ fn episodes_over_the_graphs_are_taken_under_either_name_of_a_scene() {
     assert_eq!(ran.code, Some(3), "{ran:?}");
     let scenes: Vec<String> = building.records("run").iter().map(|record| record.path.scene.to_string()).collect();
     assert_eq!(scenes[..2], [NUMBERED, "AbCdEfGhIjK"]);
+    let numbered = SceneId::new(NUMBERED).unwrap();
+    assert_eq!(OfficialSplit::of(&numbered), Some(OfficialSplit::Val), "the number says which split it is in");
     assert!(ran.err.contains("left out: scene flat09: there is no scene flat09"), "{ran:?}");
     // The way of the first scene does not lie in the second one, or it passes as a way of its own graph.
     assert!(ran.json()["errors"].as_u64().unwrap() >= 1, "{ran:?}");

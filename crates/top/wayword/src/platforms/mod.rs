@@ -187,7 +187,7 @@ pub fn open_named(
 /// # Errors
 /// When there is none of that name in this build, its data cannot be opened, or it does not use a part of `place`.
 pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
-    let Place { data, at, island, connectivity } = place;
+    let Place { data, island, connectivity, .. } = place;
     if let Some((flag, example)) = unused(name, place) {
         let default = if name == "house" { ", the default," } else { "" };
         return Err(Error::usage(
@@ -213,9 +213,9 @@ pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error>
             Ok(Box::new(HabitatPlatform::open(data()?, options, Arc::new(output::pass_on))?))
         }
         #[cfg(feature = "live")]
-        "tdw" => live::tdw(data().ok(), at),
+        "tdw" => live::tdw(data().ok(), place.at),
         #[cfg(feature = "live")]
-        "virtualhome" => live::virtualhome(at),
+        "virtualhome" => live::virtualhome(place.at),
         "recording" => Ok(Box::new(RecordingPlatform::open(data()?, Arc::new(output::pass_on))?)),
         absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
             Err(Error::not_built(format!("this build has no platform {absent}")))
