@@ -42,7 +42,7 @@ fn paths_go_along_the_graph_from_eye_to_eye() {
         assert!(path.frames.iter().all(|frame| frame.viewpoint.is_some() && frame.pose.position.z == 1.5));
         assert_eq!(path.target.unwrap().name, "toy box");
         let view = platform.look(&yard(), &path.frames[1], Gaze::quarter(Heading::NORTH)).unwrap();
-        assert!(view.image.is_some() && view.ground_truth().is_some());
+        assert!(view.image.is_some());
         assert_eq!(platform.way(&yard(), &path.frames[0], &path.frames[1]).unwrap(), None);
     }
     assert!(platform.islands(&yard()).unwrap().is_empty());
