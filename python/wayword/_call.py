@@ -119,6 +119,7 @@ def opened(
     data: PathLike | None,
     at: str | None,
     island: int | None,
+    connectivity: PathLike | None,
     *,
     is_kept: bool = False,
 ) -> contextlib.AbstractContextManager[dict[str, Any]]:
@@ -128,10 +129,17 @@ def opened(
 
     _wayword.guarded_by(*GUARDIAN)
     if platform is None or isinstance(platform, str):
-        named = {"platform": platform, "data": None if data is None else os.fspath(data), "at": at, "island": island}
+        named = {
+            "platform": platform,
+            "data": None if data is None else os.fspath(data),
+            "at": at,
+            "island": island,
+            "connectivity": None if connectivity is None else os.fspath(connectivity),
+        }
         return contextlib.nullcontext(named)
-    if data is not None or at is not None or island is not None:
-        raise errors.InputError("a world of this process takes no data, at or island", hint="leave them out")
+    if any(given is not None for given in (data, at, island, connectivity)):
+        problem = "a world of this process takes no data, at, island or connectivity"
+        raise errors.InputError(problem, hint="leave them out")
     if not isinstance(platform, Platform):
         hint = "give a name from `wayword platforms`, or an object of a subclass of wayword.Platform"
         raise errors.InputError(f"platform {platform!r} is no world", hint=hint)
@@ -156,6 +164,6 @@ def _inside(world: Platform, is_kept: bool) -> Iterator[dict[str, Any]]:
         known = name if is_kept else f"{name}-{next(_numbers)}"
         data = _wayword.put_world(known, asked, world.width_px, world.height_px, world.spacing_m)
         try:
-            yield {"platform": "process", "data": os.fspath(data), "at": None, "island": None}
+            yield {"platform": "process", "data": os.fspath(data), "at": None, "island": None, "connectivity": None}
         finally:
             _wayword.forget_world(data)

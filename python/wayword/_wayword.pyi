@@ -25,7 +25,13 @@ def forget_world(data: str) -> None: ...
 
 class Judge:
     def __new__(
-        cls, episodes: str, platform: str, data: str | None = None, at: str | None = None, island: int | None = None
+        cls,
+        episodes: str,
+        platform: str,
+        data: str | None = None,
+        at: str | None = None,
+        island: int | None = None,
+        connectivity: str | None = None,
     ) -> Judge: ...
     def __len__(self) -> int: ...
     def score(self, submission: Iterable[Mapping[str, Any]] | Mapping[str, Any], partial: bool) -> Scores: ...
@@ -44,7 +50,12 @@ class Scores:
 
 class Map:
     def __new__(
-        cls, platform: str, data: str | None = None, at: str | None = None, island: int | None = None
+        cls,
+        platform: str,
+        data: str | None = None,
+        at: str | None = None,
+        island: int | None = None,
+        connectivity: str | None = None,
     ) -> Map: ...
     def scenes(self) -> list[str]: ...
     def viewpoints(self, scene: str) -> dict[str, tuple[float, float, float]]: ...

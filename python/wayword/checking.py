@@ -55,6 +55,7 @@ def check(
     data: PathLike | None = None,
     at: str | None = None,
     island: int | None = None,
+    connectivity: PathLike | None = None,
     style: str | None = None,
     progress: Progress = None,
     **settings: object,
@@ -74,13 +75,13 @@ def check(
         platform = own["platform"]
         if data is None and str(own.get("data", "")).startswith("python:"):
             platform, run = None, texts.folder
-        elif data is None and at is None and island is None:
-            data, at, island = own.get("data"), own.get("at"), own.get("island")
+        elif data is None and at is None and island is None and connectivity is None:
+            data, at, island, connectivity = (own.get(key) for key in ("data", "at", "island", "connectivity"))
     with contextlib.ExitStack() as stack:
         file = stack.enter_context(_as_file(texts))
         where: Mapping[str, Any] = {"run": run}
         if run is None:
-            where = stack.enter_context(opened(platform, data, at, island, is_kept=True))
+            where = stack.enter_context(opened(platform, data, at, island, connectivity, is_kept=True))
         report = command("check", file, *flags(**where, style=style, **settings), progress=progress)
     not_passed = tuple(
         CheckedText(

@@ -23,7 +23,7 @@ class Follower:
 
     Args:
         platform: a world with a viewpoint graph.
-        data, at, island: as in `generate`.
+        data, at, island, connectivity: as in `generate`.
     """
 
     def __init__(
@@ -33,10 +33,11 @@ class Follower:
         data: PathLike | None = None,
         at: str | None = None,
         island: int | None = None,
+        connectivity: PathLike | None = None,
     ) -> None:
         from . import _wayword
 
-        with opened(platform, data, at, island) as where:
+        with opened(platform, data, at, island, connectivity) as where:
             self._map = _wayword.Map(**where)
 
     @property
@@ -75,7 +76,8 @@ def follow(
     data: PathLike | None = None,
     at: str | None = None,
     island: int | None = None,
+    connectivity: PathLike | None = None,
 ) -> list[Walk]:
     """The walks that a text may mean. See `Follower` for its arguments; use one to follow more than one text."""
-    follower = Follower(platform=platform, data=data, at=at, island=island)
+    follower = Follower(platform=platform, data=data, at=at, island=island, connectivity=connectivity)
     return follower.follow(text, scene=scene, start=start, heading_rad=heading_rad, most=most)

@@ -19,6 +19,7 @@ def generate(
     data: PathLike | None = None,
     at: str | None = None,
     island: int | None = None,
+    connectivity: PathLike | None = None,
     episodes: PathLike | None = None,
     paths: int | None = None,
     scan: str | Sequence[str] | None = None,
@@ -43,6 +44,8 @@ def generate(
             `wayword.Platform`. Without it, generated houses.
         data: folder or file of the platform's data.
         at: address of a running simulator.
+        island: the island of a Habitat navmesh on which paths are taken.
+        connectivity: folder of viewpoint graphs in Matterport's format along which Habitat's scenes are walked.
         episodes: take the paths of this dataset file.
         paths: number of random paths.
         scan: only these scenes.
@@ -63,7 +66,7 @@ def generate(
     if settings.pop("dry_run", None):
         hint = 'wayword.command("generate", "--dry-run", ...) gives the estimate'
         raise InputError("a dry run makes no run folder", hint=hint)
-    with opened(platform, data, at, island, is_kept=True) as where:
+    with opened(platform, data, at, island, connectivity, is_kept=True) as where:
         given = flags(
             **where,
             episodes=episodes,

@@ -165,7 +165,7 @@ class Run:
     rejected: tuple[Rejected, ...]
     errors: tuple[Failed, ...]
     platform: Mapping[str, Any] = field(default_factory=dict, repr=False)
-    """What the run was made on: `platform`, and where it has them `data`, `at` and `island`."""
+    """What the run was made on: `platform`, and where it has them `data`, `at`, `island` and `connectivity`."""
     summary: Mapping[str, Any] | None = field(default=None, repr=False)
     """What `generate` said at its end; `None` for a run that was loaded."""
 
@@ -298,6 +298,10 @@ def load_run(folder: PathLike) -> Run:
     )
 
 
+_PLACES = ("platform", "data", "at", "island", "connectivity")
+"""The settings that say what a run was made on."""
+
+
 def _platform(folder: pathlib.Path) -> dict[str, Any]:
     from . import _wayword
 
@@ -305,7 +309,7 @@ def _platform(folder: pathlib.Path) -> dict[str, Any]:
         settings = json.loads(_wayword.settings(str(folder)))
     except errors.InputError as error:
         raise errors.FormatError(error.what, str(folder / "config.toml"), error.hint) from error
-    return {name: settings[name] for name in ("platform", "data", "at", "island") if settings.get(name) is not None}
+    return {name: settings[name] for name in _PLACES if settings.get(name) is not None}
 
 
 _AGAIN = "the file was changed by hand or by another program: make the run again in another folder"

@@ -122,7 +122,7 @@ class Evaluator:
     Args:
         episodes: a dataset file whose paths name viewpoints, or items as R2R or REVERIE have them.
         platform: the world that they are in.
-        data, at, island: as in `generate`.
+        data, at, island, connectivity: as in `generate`.
     """
 
     def __init__(
@@ -133,10 +133,11 @@ class Evaluator:
         data: PathLike | None = None,
         at: str | None = None,
         island: int | None = None,
+        connectivity: PathLike | None = None,
     ) -> None:
         from . import _wayword
 
-        with _as_file(episodes) as file, opened(platform, data, at, island) as where:
+        with _as_file(episodes) as file, opened(platform, data, at, island, connectivity) as where:
             self._judge = _wayword.Judge(file, **where)
 
     def __len__(self) -> int:
@@ -179,10 +180,11 @@ def evaluate(
     data: PathLike | None = None,
     at: str | None = None,
     island: int | None = None,
+    connectivity: PathLike | None = None,
     rule: str | None = None,
     partial: bool = False,
 ) -> Evaluation:
     """Scores trajectories as the evaluators of R2R and REVERIE do. See `Evaluator` for its arguments; use one to score
     more than once."""
-    evaluator = Evaluator(episodes, platform=platform, data=data, at=at, island=island)
+    evaluator = Evaluator(episodes, platform=platform, data=data, at=at, island=island, connectivity=connectivity)
     return evaluator.score(submission, rule=rule, partial=partial)

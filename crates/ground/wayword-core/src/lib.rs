@@ -10,6 +10,7 @@
 pub mod action;
 pub mod ambiguity;
 pub mod caption;
+pub mod condition;
 pub mod contain;
 pub mod depth;
 pub mod detector;
@@ -42,6 +43,7 @@ pub use ambiguity::Ambiguity;
 pub use caption::{
     Answer, AnswerForm, Answerer, Ask, Caption, Exchange, Form, Sighting, Spot, Trouble, WayOut, Where, Witness,
 };
+pub use condition::{Condition, Fit, GraphSize, Lack, RoomNames};
 pub use contain::contained;
 pub use depth::Depth;
 pub use detector::{Detector, Found, Grounded, MOST_BOXES, Scoring, apart};

@@ -1,8 +1,8 @@
 //! What a platform must offer.
 
 use crate::{
-    Depth, Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph, ViewpointId,
-    Way, graph::GraphError,
+    Condition, Depth, Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph,
+    ViewpointId, Way, graph::GraphError,
 };
 use serde::{Deserialize, Serialize};
 use std::{
@@ -33,6 +33,24 @@ pub trait Platform: Send + Sync {
     /// When a scene cannot be read.
     fn check(&self, _scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         Ok(())
+    }
+
+    /// The scenes of its data that [`examine`](Self::examine) knows, sorted: those that it can offer, and those that
+    /// something is wrong with. Empty where it cannot tell before it is asked for views.
+    ///
+    /// # Errors
+    /// When its data cannot be read.
+    fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {
+        Ok(Vec::new())
+    }
+
+    /// Reads the files of one of its [`candidates`](Self::candidates), and says what they offer. A scene that cannot be
+    /// used is no error here. `None` where the platform cannot tell.
+    ///
+    /// # Errors
+    /// When the disk that holds the data has gone away.
+    fn examine(&self, _scene: &SceneId) -> Result<Option<Condition>, PlatformError> {
+        Ok(None)
     }
 
     /// The viewpoint graph of a scene.
@@ -156,6 +174,14 @@ macro_rules! platform_behind {
 
             fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
                 (**self).check(scenes)
+            }
+
+            fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {
+                (**self).candidates()
+            }
+
+            fn examine(&self, scene: &SceneId) -> Result<Option<Condition>, PlatformError> {
+                (**self).examine(scene)
             }
 
             fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {

@@ -6,7 +6,11 @@ use crate::{
 };
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
-use wayword::{follow::KnownScenes, meant::MeantWalk, platforms};
+use wayword::{
+    follow::KnownScenes,
+    meant::MeantWalk,
+    platforms::{self, Place},
+};
 use wayword_core::{Heading, Platform, SceneId, ViewpointId};
 
 /// The scenes of a platform, each surveyed when it is first asked for.
@@ -19,15 +23,19 @@ pub(crate) struct Map {
 #[pymethods]
 impl Map {
     #[new]
-    #[pyo3(signature = (platform, data=None, at=None, island=None))]
+    #[pyo3(signature = (platform, data=None, at=None, island=None, connectivity=None))]
     fn new(
         py: Python<'_>,
         platform: &str,
         data: Option<PathBuf>,
         at: Option<&str>,
         island: Option<usize>,
+        connectivity: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let opened = patiently(py, || platforms::open_named(platform, data.as_deref(), at, island))?;
+        let opened = patiently(py, || {
+            let (data, connectivity) = (data.as_deref(), connectivity.as_deref());
+            platforms::open_at(platform, Place { data, at, island, connectivity })
+        })?;
         Ok(Self { platform: opened.map_err(|error| raised(py, error))?, scenes: KnownScenes::new() })
     }
 

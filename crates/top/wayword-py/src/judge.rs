@@ -15,7 +15,7 @@ use wayword::{
     episodes,
     error::Error,
     judge::{Judge as Episodes, Problems, Scores as Figures, Scoring},
-    platforms,
+    platforms::{self, Place},
 };
 use wayword_formats::submission;
 use wayword_metrics::{Metric, Rule};
@@ -27,7 +27,7 @@ pub(crate) struct Judge(Episodes);
 #[pymethods]
 impl Judge {
     #[new]
-    #[pyo3(signature = (episodes, platform, data=None, at=None, island=None))]
+    #[pyo3(signature = (episodes, platform, data=None, at=None, island=None, connectivity=None))]
     fn new(
         py: Python<'_>,
         episodes: PathBuf,
@@ -35,9 +35,11 @@ impl Judge {
         data: Option<PathBuf>,
         at: Option<&str>,
         island: Option<usize>,
+        connectivity: Option<PathBuf>,
     ) -> PyResult<Self> {
         let judge = patiently(py, || -> Result<Episodes, Error> {
-            let platform = platforms::open_named(platform, data.as_deref(), at, island)?;
+            let (data, connectivity) = (data.as_deref(), connectivity.as_deref());
+            let platform = platforms::open_at(platform, Place { data, at, island, connectivity })?;
             Episodes::new(&episodes::read(&episodes, platform.as_ref())?, platform.as_ref())
         })?;
         judge.map(Self).map_err(|error| raised(py, error))

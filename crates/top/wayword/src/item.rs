@@ -66,12 +66,16 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
     for name in &settings.scan {
         let scene = SceneId::new(name.as_str())
             .map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
+        if settings.left_out.contains_key(name) {
+            continue;
+        }
         platform.graph(&scene)?;
         scenes.push(scene);
     }
-    if scenes.is_empty() {
+    if settings.scan.is_empty() {
         scenes = platform.scenes()?;
     }
+    scenes.retain(|scene| !settings.left_out.contains_key(scene.as_str()));
     if scenes.is_empty() {
         return Err(Error::usage("the platform has no scene", "check --data"));
     }
@@ -135,7 +139,7 @@ impl Item {
     }
 
     /// The scene that is tried first.
-    fn scene(&self) -> &SceneId {
+    pub(crate) fn scene(&self) -> &SceneId {
         match self {
             Self::Episode(episode) => &episode.scene,
             Self::Walk(path) => &path.scene,

@@ -43,6 +43,7 @@ pub mod team;
 mod terms;
 mod text_file;
 mod texts;
+mod usable;
 #[cfg(feature = "habitat")]
 mod walking;
 

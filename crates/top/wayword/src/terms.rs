@@ -23,7 +23,7 @@ pub(crate) fn of(platform: &str) -> &'static str {
             "Matterport3D's Terms of Use: non-commercial academic use by signed agreement, which also covers derived data"
         }
         "habitat" => {
-            "each dataset's own; Matterport3D and HM3D by an agreement with Matterport, for non-commercial academic use"
+            "each dataset's own; Matterport3D and HM3D by an agreement with Matterport, for non-commercial academic use; Gibson by an agreement on its page"
         }
         "recording" => "the recording's own; people who can be seen in it have a say",
         _ => "the simulator's own, and those of its scenes",

@@ -11,8 +11,9 @@ use wayword::cli::Cli;
 use wayword_testkit::documents::{self, Documented};
 
 /// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
-const NEEDS: [(&str, &str); 11] = [
+const NEEDS: [(&str, &str); 12] = [
     ("data/scene_datasets", "HM3D"),
+    ("--data SCENES", "scans, and viewpoint graphs for them"),
     ("--platform matterport", "Matterport3D's files"),
     ("runs/val_seen", "a run over Matterport3D's files"),
     ("runs/table", "a comparison over Matterport3D's files"),

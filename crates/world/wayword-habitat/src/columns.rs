@@ -1,4 +1,4 @@
-//! What lies straight above and below a position in a scene.
+//! What lies straight above and below a position in a scene, and between two positions.
 
 use glam::Vec3;
 use wayword_core::DVec3;
@@ -49,11 +49,19 @@ impl Columns {
     /// Columns of triangles that belong to something, which [`Columns::tags_at`] returns.
     pub(crate) fn tagged(triangles: impl Iterator<Item = ([Vec3; 3], u32)>) -> Self {
         // An upright triangle has no area seen from above.
-        let lies = |[a, b, c]: &[Vec3; 3]| {
-            let doubled = (*b - *a).truncate().perp_dot((*c - *a).truncate());
-            a.is_finite() && b.is_finite() && c.is_finite() && doubled.abs() > 1e-9
-        };
-        let (triangles, tags): (Vec<[Vec3; 3]>, Vec<u32>) = triangles.filter(|(triangle, _)| lies(triangle)).unzip();
+        let lies = |[a, b, c]: &[Vec3; 3]| (*b - *a).truncate().perp_dot((*c - *a).truncate()).abs() > 1e-9;
+        let (triangles, tags) = triangles.filter(|(triangle, _)| lies(triangle) && is_finite(triangle)).unzip();
+        Self::sorted(triangles, tags)
+    }
+
+    /// Columns that hold the upright triangles too, for [`Columns::is_open`].
+    pub(crate) fn with_walls(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+        let triangles: Vec<[Vec3; 3]> = triangles.filter(is_finite).collect();
+        let tags = vec![0; triangles.len()];
+        Self::sorted(triangles, tags)
+    }
+
+    fn sorted(triangles: Vec<[Vec3; 3]>, tags: Vec<u32>) -> Self {
         let corners = || triangles.iter().flatten().map(|corner| corner.truncate());
         let low = corners().reduce(glam::Vec2::min).unwrap_or_default();
         let high = corners().reduce(glam::Vec2::max).unwrap_or_default();
@@ -134,6 +142,46 @@ impl Columns {
         surfaces
     }
 
+    /// How far below a position the next surface lies, metres, whichever way it faces; `None` where there is none.
+    pub(crate) fn drop_m(&self, place: DVec3) -> Option<f64> {
+        let members = self.near(place).iter();
+        let heights = members.filter_map(|number| met(&self.triangles[*number as usize], place));
+        let below = heights.map(|(height_m, _)| place.z - height_m).filter(|drop_m| *drop_m > 0.0);
+        below.min_by(f64::total_cmp)
+    }
+
+    /// Whether no triangle stands on the straight line between two positions. What touches its ends does not count.
+    /// `budget` is lowered by the number of triangles that were looked at; the line counts as open once it is spent.
+    pub(crate) fn is_open(&self, from: DVec3, to: DVec3, budget: &mut u64) -> bool {
+        let mut cells = self.cells_along(from, to);
+        !cells.any(|cell| {
+            let members = &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize];
+            if members.len() as u64 > *budget {
+                *budget = 0;
+                return false;
+            }
+            *budget -= members.len() as u64;
+            members.iter().any(|number| stands_between(&self.triangles[*number as usize], from, to))
+        })
+    }
+
+    /// The cells over and under a straight line, strip by strip along x.
+    fn cells_along(&self, from: DVec3, to: DVec3) -> impl Iterator<Item = usize> + use<> {
+        let place = |place: DVec3| (place.truncate() - self.corner.as_dvec2()) / f64::from(self.side_m);
+        let (left, right) = if from.x <= to.x { (place(from), place(to)) } else { (place(to), place(from)) };
+        let [wide, deep] = self.size;
+        let strips = strip(left.x, right.x, wide);
+        strips.flat_map(move |x| {
+            // The part of the line that lies in this strip; a line along y lies in one strip with all its length.
+            let at = |x: f64| {
+                let share = if right.x > left.x { (x - left.x) / (right.x - left.x) } else { 0.0 };
+                left.y + share.clamp(0.0, 1.0) * (right.y - left.y)
+            };
+            let (a, b) = if right.x > left.x { (at(x as f64), at(x as f64 + 1.0)) } else { (left.y, right.y) };
+            strip(a.min(b), a.max(b), deep).map(move |y| y * wide + x)
+        })
+    }
+
     /// Most triangles that a look at one place goes through.
     pub(crate) fn most_near(&self) -> usize {
         self.starts.windows(2).map(|cell| (cell[1] - cell[0]) as usize).max().unwrap_or_default()
@@ -164,6 +212,32 @@ impl Over {
     }
 }
 
+fn is_finite(triangle: &[Vec3; 3]) -> bool {
+    triangle.iter().all(|corner| corner.is_finite())
+}
+
+/// The cells of a row of `count` that lie between two positions, in sides of a cell.
+fn strip(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
+    // Casts saturate, and a hair more is looked at than needed, because the line may run along the border of cells.
+    let end = if high < 0.0 { 0 } else { ((high + 1e-6) as usize).saturating_add(1).min(count) };
+    ((low - 1e-6).max(0.0) as usize).min(end)..end
+}
+
+/// Whether a triangle stands on the straight line between two positions (Möller and Trumbore's test).
+fn stands_between([a, b, c]: &[Vec3; 3], from: DVec3, to: DVec3) -> bool {
+    let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
+    let (way, ab, ac) = (to - from, b - a, c - a);
+    let across = way.cross(ac);
+    let whole = ab.dot(across);
+    if whole == 0.0 {
+        return false;
+    }
+    let start = from - a;
+    let (along_b, turned) = (start.dot(across) / whole, start.cross(ab));
+    let (along_c, share) = (way.dot(turned) / whole, ac.dot(turned) / whole);
+    along_b >= 0.0 && along_c >= 0.0 && along_b + along_c <= 1.0 && share > 1e-6 && share < 1.0 - 1e-6
+}
+
 /// The height at which a vertical line through a position meets a triangle, and whether the triangle faces up.
 fn met([a, b, c]: &[Vec3; 3], place: DVec3) -> Option<(f64, bool)> {
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
@@ -177,6 +251,7 @@ fn met([a, b, c]: &[Vec3; 3], place: DVec3) -> Option<(f64, bool)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     /// A square around the origin at a height, facing up or down.
     fn sheet(half_m: f32, height_m: f32, is_up: bool) -> Vec<[Vec3; 3]> {
@@ -220,5 +295,49 @@ mod tests {
         assert!(wide.members.len() < 4_000_000 && wide.side_m > FINEST_M);
         assert_eq!(wide.over(DVec3::new(4e5, -4e5, 0.0)), Over::Ceiling(3.0));
         assert_eq!(Columns::new(std::iter::empty()).over(DVec3::ZERO), Over::Sky);
+    }
+
+    /// A wall along y at x = 1 with a doorway from y = 0 to y = 1, and a floor.
+    fn walled() -> Columns {
+        let corner = |y: f32, z: f32| Vec3::new(1.0, y, z);
+        let piece = |low: f32, high: f32| {
+            let [a, b, c, d] = [corner(low, 0.0), corner(high, 0.0), corner(high, 2.5), corner(low, 2.5)];
+            vec![[a, b, c], [a, c, d]]
+        };
+        let parts = [sheet(4.0, 0.0, true), piece(-4.0, 0.0), piece(1.0, 4.0)];
+        Columns::with_walls(parts.iter().flatten().copied())
+    }
+
+    #[test]
+    fn a_line_through_a_wall_is_not_open_and_one_through_its_doorway_is() {
+        let walled = walled();
+        let open = |a: [f64; 2], b: [f64; 2]| {
+            let eye = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.5);
+            let both = [walled.is_open(eye(a), eye(b), &mut 1000), walled.is_open(eye(b), eye(a), &mut 1000)];
+            assert_eq!(both[0], both[1], "{a:?} {b:?}");
+            both[0]
+        };
+        assert!(!open([0.0, -2.0], [2.0, -2.0]) && !open([-3.0, -3.0], [3.0, 3.9]) && !open([0.5, -0.5], [3.9, -0.1]));
+        assert!(open([0.0, 0.5], [2.0, 0.5]) && open([0.9, -3.0], [0.9, 3.0]) && open([-3.0, -3.0], [0.9, 3.0]));
+        assert!(open([2.0, -3.0], [2.0, 3.0]) && open([-9.0, 9.0], [9.0, 9.0]), "the last one is outside");
+        assert_eq!(walled.drop_m(DVec3::new(0.0, 0.0, 1.5)), Some(1.5));
+        assert_eq!(walled.drop_m(DVec3::new(9.0, 0.0, 1.5)), None);
+    }
+
+    #[test]
+    fn a_line_is_looked_at_within_its_budget() {
+        let mut budget = 2;
+        assert!(walled().is_open(DVec3::new(-3.0, -3.0, 1.5), DVec3::new(3.0, -3.0, 1.5), &mut budget));
+        assert_eq!(budget, 0);
+    }
+
+    proptest! {
+        #[test]
+        fn no_wall_on_a_line_is_missed(a in [-3.9..3.9_f64, -3.9..3.9], b in [-3.9..3.9_f64, -3.9..3.9]) {
+            let eye = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.2);
+            let (walled, from, to) = (walled(), eye(a), eye(b));
+            let all = walled.triangles.iter().any(|triangle| stands_between(triangle, from, to));
+            prop_assert_eq!(walled.is_open(from, to, &mut 1_000_000), !all);
+        }
     }
 }

@@ -71,8 +71,7 @@ impl Frames {
         }
         let platform = &asked.platform;
         if platform.platform.is_some() || platform.data.is_some() || platform.at.is_some() {
-            let (data, at) = (platform.data.as_deref(), platform.at.as_deref());
-            let opened = platforms::open_and_warn(platform.name(), data, at, platform.island)?;
+            let opened = platforms::open_and_warn(platform.name(), platform.into())?;
             return Self::of_platform(opened, file);
         }
         match runs.iter().find(|run| run.join(file::FRAMES).is_dir()) {

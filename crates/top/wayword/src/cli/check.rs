@@ -25,7 +25,7 @@ pub struct Check {
     /// Check against what this run saw: its folder has the paths and their captions, so no platform is needed. For texts of a run
     /// that somebody changed after `wayword export`. A text is held against a closed world where captions were the run's
     /// evidence; labels are not kept in a run, so what the captions lack is unverified there.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["platform", "data", "at", "island", "calibration"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["platform", "data", "at", "island", "connectivity", "calibration"])]
     pub run: Option<PathBuf>,
     /// Check that every text keeps to this style. Without it, a text written by Wayword is checked against the built-in style that
     /// it was written in, and any other text only against its path.

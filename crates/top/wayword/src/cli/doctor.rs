@@ -10,11 +10,16 @@ use std::path::PathBuf;
 Examples:
   wayword doctor --llm ollama/qwen3 --see ollama/llava
   wayword doctor --see server/llava --base-url http://127.0.0.1:8000/v1
-  wayword doctor --platform matterport --data DATA")]
+  wayword doctor --platform matterport --data DATA
+  wayword doctor --platform habitat --data SCENES --connectivity GRAPHS --scenes")]
 pub struct Doctor {
     /// Settings as TOML, as `generate` takes them. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
+    /// Examine every scene of the data, and list what it has, what it lacks, and whether its viewpoint graph lies in it (platform
+    /// habitat).
+    #[arg(long)]
+    pub scenes: bool,
     /// The platform.
     #[command(flatten)]
     pub platform: AskedPlatform,

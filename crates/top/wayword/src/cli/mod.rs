@@ -146,6 +146,7 @@ Examples:
   wayword generate --paths 20 --out runs/houses
   wayword generate --platform matterport --data DATA --paths 200 --hops 4..7 --metres 5..20 --seed 1 --out runs/random
   wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --style r2r --out runs/val_seen
+  wayword generate --platform habitat --data SCENES --connectivity GRAPHS --paths 200 --out runs/scans
   wayword generate --style mine.toml --style r2r=R2R_train.json --out runs/styles
   wayword generate --paths 20 --llm ollama/qwen3 --see ollama/llava --out runs/models
   wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run

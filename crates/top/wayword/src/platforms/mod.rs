@@ -5,7 +5,12 @@ mod inside;
 mod live;
 mod remembering;
 
-use crate::{error::Error, output, settings::Settings, similar::did_you_mean};
+use crate::{
+    error::Error,
+    output,
+    settings::{AskedPlatform, Settings},
+    similar::did_you_mean,
+};
 use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
 #[cfg(feature = "habitat")]
@@ -61,8 +66,8 @@ pub const PLATFORMS: [Listed; 7] = [
     Listed {
         name: "habitat",
         what: "AI Habitat's scenes, without Habitat",
-        needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked",
-        offers: "pictures, geodesic paths; labels and rooms with semantic files",
+        needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked; or --connectivity DIR of viewpoint graphs",
+        offers: "pictures, geodesic paths or paths along the graphs; labels and rooms with semantic files",
         is_here: cfg!(feature = "habitat"),
     },
     Listed {
@@ -105,8 +110,8 @@ pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
 
 /// Whether random paths of a platform can have hops. Elsewhere they run over open ground, and `--hops` has no effect. A
 /// recording with poses has none either, but whether it has poses is known only once it is opened.
-pub(crate) fn has_hops(name: &str) -> bool {
-    matches!(name, "matterport" | "process" | "recording")
+pub(crate) fn has_hops(settings: &Settings) -> bool {
+    settings.connectivity.is_some() || matches!(&*settings.platform, "matterport" | "process" | "recording")
 }
 
 /// Whether a platform is a simulator that runs by itself, and may have to be waited for.
@@ -114,27 +119,49 @@ fn is_live(name: &str) -> bool {
     matches!(name, "tdw" | "virtualhome")
 }
 
+/// Where a platform's scenes are, as flags and settings say it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Place<'a> {
+    /// The folder or file of its data.
+    pub data: Option<&'a Path>,
+    /// The address of a running simulator.
+    pub at: Option<&'a str>,
+    /// The island of a Habitat navmesh on which paths are drawn.
+    pub island: Option<usize>,
+    /// The folder of viewpoint graphs along which Habitat's scenes are walked.
+    pub connectivity: Option<&'a Path>,
+}
+
+impl<'a> From<&'a AskedPlatform> for Place<'a> {
+    fn from(asked: &'a AskedPlatform) -> Self {
+        let AskedPlatform { platform: _, data, at, island, connectivity } = asked;
+        Self { data: data.as_deref(), at: at.as_deref(), island: *island, connectivity: connectivity.as_deref() }
+    }
+}
+
+impl<'a> From<&'a Settings> for Place<'a> {
+    fn from(settings: &'a Settings) -> Self {
+        let Settings { data, at, island, connectivity, .. } = settings;
+        Self { data: data.as_deref(), at: at.as_deref(), island: *island, connectivity: connectivity.as_deref() }
+    }
+}
+
 /// Opens the platform that the settings name, and says what its data lacks.
 ///
 /// # Errors
 /// When there is none of that name, or its data cannot be opened.
 pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
-    open_and_warn(&settings.platform, settings.data.as_deref(), settings.at.as_deref(), settings.island)
+    open_and_warn(&settings.platform, Place::from(settings))
 }
 
-/// As [`open_named`], and warns if the data lacks what says which objects there are.
+/// As [`open_at`], and warns if the data lacks what says which objects there are.
 ///
 /// # Errors
-/// As [`open_named`].
-pub(crate) fn open_and_warn(
-    name: &str,
-    data: Option<&Path>,
-    at: Option<&str>,
-    island: Option<usize>,
-) -> Result<Box<dyn Platform>, Error> {
-    let platform = open_named(name, data, at, island)?;
+/// As [`open_at`].
+pub(crate) fn open_and_warn(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
+    let platform = open_at(name, place)?;
     if name == "matterport"
-        && let Some(lack) = data.and_then(Matterport::lack_of_objects)
+        && let Some(lack) = place.data.and_then(Matterport::lack_of_objects)
     {
         output::pass_on(&lack);
     }
@@ -152,11 +179,26 @@ pub fn open_named(
     at: Option<&str>,
     island: Option<usize>,
 ) -> Result<Box<dyn Platform>, Error> {
-    if let Some((flag, example)) = unused(name, data, at, island) {
+    open_at(name, Place { data, at, island, ..Place::default() })
+}
+
+/// Opens a platform by its name, with where its scenes are.
+///
+/// # Errors
+/// When there is none of that name in this build, its data cannot be opened, or it does not use a part of `place`.
+pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
+    let Place { data, island, connectivity, .. } = place;
+    if let Some((flag, example)) = unused(name, place) {
         let default = if name == "house" { ", the default," } else { "" };
         return Err(Error::usage(
             format!("platform {name}{default} takes no {flag}"),
             format!("say with --platform which platform this {flag} is for, as in --platform {example}"),
+        ));
+    }
+    if island.is_some() && connectivity.is_some() {
+        return Err(Error::usage(
+            "--island and --connectivity cannot be combined: a scene with a graph is not walked on a navmesh",
+            "give one of them",
         ));
     }
     let data = || data.ok_or_else(|| no_data(name));
@@ -166,13 +208,14 @@ pub fn open_named(
         "process" => child(data()?),
         #[cfg(feature = "habitat")]
         "habitat" => {
-            let options = HabitatOptions { island, ..HabitatOptions::default() };
+            let connectivity = connectivity.map(Path::to_owned);
+            let options = HabitatOptions { island, connectivity, ..HabitatOptions::default() };
             Ok(Box::new(HabitatPlatform::open(data()?, options, Arc::new(output::pass_on))?))
         }
         #[cfg(feature = "live")]
-        "tdw" => live::tdw(data().ok(), at),
+        "tdw" => live::tdw(data().ok(), place.at),
         #[cfg(feature = "live")]
-        "virtualhome" => live::virtualhome(at),
+        "virtualhome" => live::virtualhome(place.at),
         "recording" => Ok(Box::new(RecordingPlatform::open(data()?, Arc::new(output::pass_on))?)),
         absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
             Err(Error::not_built(format!("this build has no platform {absent}")))
@@ -196,16 +239,12 @@ fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
 
 /// The flag that a platform does not use, and one of the platforms that use it. Otherwise `--data` without `--platform`
 /// would silently give a generated house.
-fn unused(
-    name: &str,
-    data: Option<&Path>,
-    at: Option<&str>,
-    island: Option<usize>,
-) -> Option<(&'static str, &'static str)> {
-    match (data, at) {
+fn unused(name: &str, place: Place<'_>) -> Option<(&'static str, &'static str)> {
+    match (place.data, place.at) {
         (Some(_), _) if matches!(name, "house" | "virtualhome") => Some(("--data", "matterport")),
         (_, Some(_)) if !is_live(name) => Some(("--at", "tdw")),
-        _ if island.is_some() && name != "habitat" => Some(("--island", "habitat")),
+        _ if place.island.is_some() && name != "habitat" => Some(("--island", "habitat")),
+        _ if place.connectivity.is_some() && name != "habitat" => Some(("--connectivity", "habitat")),
         _ => None,
     }
 }

@@ -92,7 +92,7 @@ fn roles(roles: &RolesPlayed) -> RolesView {
 fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
     let file = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (hops, length_m) = (&settings.request.hops, &settings.request.length_m);
-    let hops = match has_hops(&settings.platform) {
+    let hops = match has_hops(settings) {
         true => format!(", {} to {} hops", hops.start(), hops.end()),
         false => String::new(),
     };

@@ -71,7 +71,8 @@ pub fn is_begun(folder: &Path) -> bool {
     folder.join(file::CONFIG).exists()
 }
 
-/// The settings with which a folder's run goes on: more paths and items may be asked for than before.
+/// The settings with which a folder's run goes on: more paths and items may be asked for than before, and scenes that it left
+/// out stay left out.
 ///
 /// # Errors
 /// When the folder's settings cannot be read.
@@ -79,8 +80,8 @@ pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> 
     if !is_begun(folder) {
         return Ok(settings.clone());
     }
-    let raised_from = config_of::<Settings>(folder)?.raised_to(settings).raised_from;
-    Ok(Settings { raised_from, ..settings.clone() })
+    let Settings { raised_from, left_out, .. } = config_of::<Settings>(folder)?.raised_to(settings);
+    Ok(Settings { raised_from, left_out, ..settings.clone() })
 }
 
 /// The settings of a run.

@@ -101,6 +101,10 @@ platform:
         /// largest that has a ceiling above it, which excludes roofs; in outdoor scenes, the largest]
         #[arg(long, value_name = "N")]
         pub island: Option<usize>,
+        /// Walk Habitat's scenes along the viewpoint graphs of this folder, SCENE_connectivity.json in Matterport's format
+        /// (ScaleVLN has them for HM3D and Gibson), and not over navmeshes. Scenes that cannot be used are left out and named.
+        #[arg(long, value_name = "DIR")]
+        pub connectivity: Option<PathBuf>,
     }
 
 walks:
@@ -116,7 +120,7 @@ walks:
         /// Use only this scene. May be given several times.
         #[arg(long, value_name = "SCENE")]
         pub scan: Option<Vec<String>>,
-        /// Number of hops of a random path, on platforms with a viewpoint graph (matterport, process, recordings without poses).
+        /// Number of hops of a random path, on platforms with a viewpoint graph (matterport, process, habitat with --connectivity, recordings without poses).
         /// [default: 4..7]
         #[arg(long, value_name = "FROM..TO")]
         pub hops: Option<String>,

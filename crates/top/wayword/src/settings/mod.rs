@@ -13,7 +13,7 @@ use std::{
     path::{Path, PathBuf},
     str::FromStr,
 };
-use wayword_core::PathRequest;
+use wayword_core::{Lack, PathRequest};
 use wayword_synthesis::{
     dialogue::{Mode, QUESTIONS},
     walk::FrameSelection,
@@ -39,6 +39,9 @@ pub struct Settings {
     /// The island of a Habitat navmesh that paths are taken on; chosen by the platform if `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub island: Option<usize>,
+    /// Folder of the viewpoint graphs along which Habitat's scenes are walked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub connectivity: Option<PathBuf>,
     /// Dataset file whose paths are taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub episodes: Option<PathBuf>,
@@ -98,6 +101,9 @@ pub struct Settings {
     /// Hashes of the files and styles that the run began with, by name. A run is not continued with others.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
+    /// The scenes that the run leaves out because they could not be used when it began, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub left_out: BTreeMap<String, Lack>,
 }
 
 fn one() -> u32 {
@@ -202,6 +208,7 @@ impl Asked {
         let settings = self.resolve()?;
         for (flag, path) in [
             ("--data", &settings.data),
+            ("--connectivity", &settings.connectivity),
             ("--episodes", &settings.episodes),
             ("--calibration", &settings.calibration),
             ("--detector-figures", &settings.detector_figures),
@@ -276,6 +283,7 @@ impl Asked {
             data: platform.data,
             at: platform.at,
             island: platform.island,
+            connectivity: platform.connectivity,
             episodes: walks.episodes,
             paths,
             raised_from: Vec::new(),
@@ -299,6 +307,7 @@ impl Asked {
             no_route: writing.no_route.unwrap_or(false),
             roles,
             inputs: BTreeMap::new(),
+            left_out: BTreeMap::new(),
         })
     }
 }

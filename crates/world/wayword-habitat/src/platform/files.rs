@@ -14,7 +14,7 @@ use wayword_core::SceneId;
 /// Depth of nested folders that is searched.
 const DEPTH: usize = 4;
 /// Most files and folders that are examined.
-const MAX_ENTRIES: usize = 200_000;
+pub(super) const MAX_ENTRIES: usize = 200_000;
 const HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as in Habitat's datasets";
 
 /// The files of one scene.
@@ -22,6 +22,8 @@ const HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as 
 pub(super) struct SceneFiles {
     /// The stage configuration, GLB or glTF.
     pub(super) stage: PathBuf,
+    /// The viewpoint graph that it is walked along; `None` where its ground is walked on.
+    pub(super) graph: Option<PathBuf>,
 }
 
 /// Every scene at a path, which is a file or a folder. The id is the file's name without the ending for its format; if
@@ -49,7 +51,7 @@ pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, File
         let names = [stem.clone(), format!("{parent}.{stem}")];
         let free = names.into_iter().filter_map(|name| SceneId::new(name).ok()).find(|id| !scenes.contains_key(id));
         if let Some(id) = free {
-            scenes.insert(id, SceneFiles { stage });
+            scenes.insert(id, SceneFiles { stage, graph: None });
         }
     }
     if scenes.is_empty() {
@@ -96,12 +98,17 @@ impl SceneFiles {
         stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
     }
 
+    /// The file that says where one can walk: the viewpoint graph, or else the navmesh.
+    fn ways(&self, stage: &Stage) -> Option<PathBuf> {
+        self.graph.clone().or_else(|| self.navmesh(stage))
+    }
+
     /// Every file that the scene is read from, including those that its GLB or glTF files name, sorted.
     pub(super) fn all(&self, stage: &Stage) -> Vec<PathBuf> {
         let SemanticFiles { painted, numbered } = self.semantics(stage);
         let pairs = painted.into_iter().chain(numbered).flat_map(|(mesh, names)| [mesh, names]);
         let mut all: Vec<PathBuf> =
-            [self.stage.clone(), stage.asset.clone()].into_iter().chain(self.navmesh(stage)).chain(pairs).collect();
+            [self.stage.clone(), stage.asset.clone()].into_iter().chain(self.ways(stage)).chain(pairs).collect();
         let named: Vec<PathBuf> = all.iter().filter(|file| is_gltf(file)).flat_map(|file| files_beside(file)).collect();
         all.extend(named);
         all.sort();
@@ -175,7 +182,7 @@ mod tests {
         for (name, bytes) in [("yard.gltf", document.to_string().into_bytes()), ("yard.glb", glb)] {
             let file = place.join(name);
             std::fs::write(&file, bytes).unwrap();
-            let all = SceneFiles { stage: file.clone() }.all(&Stage::of(&file).unwrap());
+            let all = SceneFiles { stage: file.clone(), graph: None }.all(&Stage::of(&file).unwrap());
             assert_eq!(all, [place.join("paint/a.png"), place.join("yard walls.bin"), file]);
             std::fs::remove_file(place.join(name)).unwrap();
         }

@@ -1,17 +1,8 @@
 //! One scene, read and prepared.
 
-use super::{
-    HabitatOptions,
-    files::SceneFiles,
-    islands::{self, Choice, Survey},
-};
+use super::{HabitatOptions, files::SceneFiles, graph, walkable::Walkable};
 use crate::{
-    axes::EYE_M,
-    bake::bake,
-    columns::Columns,
-    fault::{self, FileError},
-    ground::{Ground, viewpoint_graph},
-    navmesh::{NavMesh, NavMeshSettings},
+    fault::FileError,
     scene::{Model, Stage},
     semantics::{self, Semantics},
 };
@@ -21,26 +12,19 @@ use std::{
 };
 use wayword_core::{
     DVec3, Depth, Frame, FromAbove, Gaze, GroundTruth, Heading, Image, Island, Label, ObjectId, PlatformError, Pose,
-    SceneId, View, ViewpointGraph, ViewpointId,
+    SceneId, View, ViewpointGraph, ViewpointId, Way,
 };
 use wayword_render::{Camera, RenderError, Scene, render, render_ids, storey};
 use wayword_world::seen_from;
 
-const MAX_NAVMESH: u64 = 1 << 30;
-const NAVMESH_HINT: &str = "remove the file, and a navmesh is baked from the scene instead";
-const ISLAND_HINT: &str = "choose an existing island with --island, or give the scene a .navmesh of its rooms";
 const DRAW_HINT: &str = "export the scene again as GLB";
 
-/// A scene with its ground.
+/// A scene, and where one can walk in it.
 pub(super) struct Home {
     pub(super) id: SceneId,
     scene: Scene,
-    pub(super) navmesh: NavMesh,
-    pub(super) ground: Ground,
-    columns: Columns,
-    surveys: Vec<Survey>,
-    /// The warning to print if the user may mean another island than the chosen one.
-    pub(super) doubt: Option<String>,
+    /// Its ground; `None` where it is walked along a graph from a file.
+    pub(super) walkable: Option<Walkable>,
     pub(super) graph: Arc<ViewpointGraph>,
     pub(super) semantics: Option<Semantics>,
     /// The viewpoints from which each object is seen; computed when first needed.
@@ -48,47 +32,39 @@ pub(super) struct Home {
 }
 
 impl Home {
-    pub(super) fn build(id: &SceneId, files: &SceneFiles, options: &HabitatOptions) -> Result<Self, PlatformError> {
+    /// Reads a scene. `fits` says that its graph is known to lie in it.
+    pub(super) fn build(
+        id: &SceneId,
+        files: &SceneFiles,
+        options: &HabitatOptions,
+        fits: bool,
+    ) -> Result<Self, PlatformError> {
         let stage = Stage::of(&files.stage)?;
         let model = Model::of(&stage)?;
-        let navmesh = match options.navmesh.clone().or_else(|| files.navmesh(&stage)) {
-            Some(file) => {
-                let bytes = fault::bytes(&file, MAX_NAVMESH, NAVMESH_HINT)?;
-                NavMesh::from_bytes(&bytes).map_err(|error| FileError::new(&file, error.to_string(), NAVMESH_HINT))?
+        let named = |source| PlatformError::Graph { scene: id.clone(), source };
+        let (walkable, graph) = match &files.graph {
+            Some(file) => (None, graph::read(file, (!fits).then_some(&model))?),
+            None => {
+                let walkable = Walkable::of(&model, &stage, files, options)?;
+                let graph = walkable.viewpoint_graph().map_err(named)?;
+                (Some(walkable), graph)
             }
-            None => bake(&model, &NavMeshSettings::default())
-                .map_err(|error| FileError::new(&stage.asset, error.to_string(), error.hint()))?,
         };
-        let columns = Columns::new(model.triangles());
-        let ground = Ground::new(&navmesh);
-        let surveys = islands::survey(&ground, &columns);
-        let choice = island(&ground, &surveys, options, &stage)?;
-        let doubt = choice.is_doubtful.then(|| {
-            let listed = islands::listed(&surveys);
-            format!(
-                "scene {id}: paths stay on island {} of its navmesh; to choose another, use --island ({listed})",
-                choice.number
-            )
-        });
-        let ground = ground.keeping_to(choice.number);
         let semantics = semantics::load(&files.semantics(&stage), stage.habitat_from_asset)?;
         let scene = Scene::new(model.meshes, model.materials, model.textures);
         let scene = scene.map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
-        let graph = viewpoint_graph(&ground, ground.main())
-            .map_err(|source| PlatformError::Graph { scene: id.clone(), source })?;
         let (id, graph) = (id.clone(), Arc::new(graph));
-        let seen_from = OnceLock::new();
-        Ok(Self { id, scene, navmesh, ground, columns, surveys, doubt, graph, semantics, seen_from })
+        Ok(Self { id, scene, walkable, graph, semantics, seen_from: OnceLock::new() })
     }
 
     /// The islands of its navmesh, the largest first.
     pub(super) fn islands(&self) -> Vec<Island> {
-        self.surveys.iter().map(|survey| survey.told(Some(self.ground.main()))).collect()
+        self.walkable.as_ref().map(Walkable::islands).unwrap_or_default()
     }
 
-    /// Whether a person can stand upright at a place on the ground.
-    pub(super) fn is_headroom(&self, ground: DVec3) -> bool {
-        self.columns.over(ground).is_headroom()
+    /// The shortest way over its ground between two eyes; `None` where there is none, or the ground is not known.
+    pub(super) fn way(&self, from: DVec3, to: DVec3) -> Option<Way> {
+        self.walkable.as_ref()?.way(from, to)
     }
 
     /// What is seen from an eye: a picture if `pictured`, and labels if the scene has semantics.
@@ -146,30 +122,13 @@ impl Home {
         Ok(self.seen_from.get_or_init(|| seen))
     }
 
-    /// Returns an error for a frame that is not above the ground.
+    /// Returns an error for a frame that is not above the ground, or not on the way along the graph.
     pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
-        if self.ground.nearest(eye - DVec3::Z * EYE_M).is_some() {
-            return Ok(());
-        }
-        Err(PlatformError::nowhere(&self.id, frame))
-    }
-}
-
-/// The island that paths stay on: the one that the user chose, else the one on which people would walk.
-fn island(
-    ground: &Ground,
-    surveys: &[Survey],
-    options: &HabitatOptions,
-    stage: &Stage,
-) -> Result<Choice, PlatformError> {
-    let refused = |reason: String| FileError::new(&stage.asset, reason, ISLAND_HINT).into();
-    match options.island {
-        Some(number) if number < ground.islands_m2().count() => Ok(Choice { number, is_doubtful: false }),
-        Some(number) => Err(refused(format!("its navmesh has no island {number}: {}", islands::listed(surveys)))),
-        None => islands::choose(surveys).ok_or_else(|| {
-            let listed = islands::listed(surveys);
-            refused(format!("no island of its navmesh is a place to walk on, indoors or under the open sky: {listed}"))
-        }),
+        let is_there = match &self.walkable {
+            Some(walkable) => walkable.is_under(eye),
+            None => graph::passes(&self.graph, eye),
+        };
+        if is_there { Ok(()) } else { Err(PlatformError::nowhere(&self.id, frame)) }
     }
 }

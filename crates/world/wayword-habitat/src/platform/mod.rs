@@ -1,22 +1,33 @@
 //! Habitat's scenes as a platform.
 
+mod examine;
 mod files;
+mod fit;
+mod graph;
+#[cfg(test)]
+mod graph_tests;
 mod home;
 mod islands;
+mod pairs;
 mod sample;
 #[cfg(test)]
 mod tests;
+mod walkable;
 
-use crate::{axes::EYE_M, navmesh::NavMesh, scene::Stage};
+use crate::{
+    navmesh::NavMesh,
+    scene::{Model, Stage},
+};
 use files::SceneFiles;
 use home::Home;
+use pairs::Pairs;
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path as FilePath, PathBuf},
     sync::{Arc, Mutex, PoisonError},
 };
 use wayword_core::{
-    DVec3, Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent,
+    Condition, Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Platform, PlatformError, Recent,
     SceneId, View, ViewpointGraph, ViewpointId, Way,
 };
 use wayword_render::flat;
@@ -29,8 +40,10 @@ const READY: usize = 2;
 pub struct HabitatPlatform {
     options: HabitatOptions,
     hear: Hear,
-    scenes: BTreeMap<SceneId, SceneFiles>,
+    pairs: Pairs,
     ready: Recent<SceneId, Home>,
+    /// What was found of scenes that were examined, so that each is examined once.
+    examined: Mutex<BTreeMap<SceneId, Condition>>,
     /// Scenes for which a warning was already given, so that each is given once.
     told: Mutex<BTreeSet<SceneId>>,
 }
@@ -48,11 +61,14 @@ pub struct HabitatOptions {
     pub navmesh: Option<PathBuf>,
     /// The island that paths stay on; 0 is the largest. If `None`, the program chooses one for each scene.
     pub island: Option<usize>,
+    /// A folder of viewpoint graphs in Matterport's format (`SCENE_connectivity.json`). Scenes are then walked along their
+    /// graphs, no navmesh is read or baked, and scenes without a graph are left out.
+    pub connectivity: Option<PathBuf>,
 }
 
 impl Default for HabitatOptions {
     fn default() -> Self {
-        Self { width_px: 640, height_px: 480, interval_m: 1.0, navmesh: None, island: None }
+        Self { width_px: 640, height_px: 480, interval_m: 1.0, navmesh: None, island: None, connectivity: None }
     }
 }
 
@@ -62,10 +78,15 @@ impl HabitatPlatform {
     /// no navmesh, one is baked. `hear` receives a warning if it is doubtful on which of a scene's islands people walk.
     ///
     /// # Errors
-    /// If there is no scene, or the folder cannot be read.
+    /// If there is no scene, or a folder cannot be read.
     pub fn open(place: &FilePath, options: HabitatOptions, hear: Hear) -> Result<Self, PlatformError> {
-        let (scenes, ready) = (files::scenes(place)?, Recent::one_at_a_time(READY));
-        Ok(Self { options, hear, scenes, ready, told: Mutex::default() })
+        let scenes = files::scenes(place)?;
+        let pairs = match &options.connectivity {
+            Some(folder) => pairs::pair(scenes, folder)?,
+            None => Pairs { scenes, ..Pairs::default() },
+        };
+        let (ready, examined, told) = (Recent::one_at_a_time(READY), Mutex::default(), Mutex::default());
+        Ok(Self { options, hear, pairs, ready, examined, told })
     }
 
     /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
@@ -73,28 +94,46 @@ impl HabitatPlatform {
     /// # Errors
     /// If there is no such scene, or its files cannot be read.
     pub fn navmesh(&self, scene: &SceneId) -> Result<NavMesh, PlatformError> {
-        Ok(self.home(scene)?.navmesh.clone())
+        if let Some(walkable) = &self.home(scene)?.walkable {
+            return Ok(walkable.navmesh.clone());
+        }
+        let (_, files) = self.files_of(scene)?;
+        let stage = Stage::of(&files.stage)?;
+        Ok(walkable::navmesh(&Model::of(&stage)?, &stage, files, &self.options)?)
     }
 
     fn home(&self, scene: &SceneId) -> Result<Arc<Home>, PlatformError> {
-        let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
+        let (scene, files) = self.files_of(scene)?;
         self.ready.get_or_make(scene.clone(), || {
-            let home = Home::build(scene, files, &self.options)?;
-            if let Some(doubt) = &home.doubt
+            let fits = self.known(scene).is_some_and(|condition| condition.unusable.is_none());
+            let home = Home::build(scene, files, &self.options, fits)?;
+            if let Some(doubt) = home.walkable.as_ref().and_then(|walkable| walkable.doubt())
                 && self.told.lock().unwrap_or_else(PoisonError::into_inner).insert(scene.clone())
             {
-                (self.hear)(doubt);
+                (self.hear)(&format!("scene {scene}: {doubt}"));
             }
             Ok(home)
         })
     }
 
+    /// A scene's id and files, by its id or another name of it.
+    fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &SceneFiles), PlatformError> {
+        let id = self.pairs.others.get(name).unwrap_or(name);
+        self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown(name))
+    }
+
+    /// What was found of a scene, if it was examined.
+    fn known(&self, scene: &SceneId) -> Option<Condition> {
+        self.examined.lock().unwrap_or_else(PoisonError::into_inner).get(scene).cloned()
+    }
+
     fn unknown(&self, scene: &SceneId) -> PlatformError {
-        let some: Vec<&str> = self.scenes.keys().take(3).map(SceneId::as_str).collect();
-        PlatformError::UnknownScene {
-            scene: scene.to_string(),
-            hint: format!("there are {}: {} ...", self.scenes.len(), some.join(", ")),
-        }
+        let some: Vec<&str> = self.pairs.scenes.keys().take(3).map(SceneId::as_str).collect();
+        let hint = match self.pairs.unpaired.get(scene) {
+            Some(lack) => format!("{}; {}", lack.what, lack.hint),
+            None => format!("there are {}: {} ...", self.pairs.scenes.len(), some.join(", ")),
+        };
+        PlatformError::UnknownScene { scene: scene.to_string(), hint }
     }
 
     fn seen(&self, scene: &SceneId, from: &Frame, gaze: Gaze, pictured: bool) -> Result<View, PlatformError> {
@@ -110,7 +149,29 @@ impl Platform for HabitatPlatform {
     }
 
     fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
-        Ok(self.scenes.keys().cloned().collect())
+        Ok(self.pairs.scenes.keys().cloned().collect())
+    }
+
+    fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {
+        let all: BTreeSet<&SceneId> = self.pairs.scenes.keys().chain(self.pairs.unpaired.keys()).collect();
+        Ok(all.into_iter().cloned().collect())
+    }
+
+    fn examine(&self, scene: &SceneId) -> Result<Option<Condition>, PlatformError> {
+        if let Some(why) = self.pairs.unpaired.get(scene) {
+            return Ok(Some(Condition::unusable(scene.clone(), why.clone())));
+        }
+        let (id, files) = self.files_of(scene)?;
+        let found = match self.known(id) {
+            Some(known) => known,
+            None => {
+                let found = examine::examine(id, files)?;
+                self.examined.lock().unwrap_or_else(PoisonError::into_inner).insert(id.clone(), found.clone());
+                found
+            }
+        };
+        // It is told by the name that was asked for.
+        Ok(Some(Condition { scene: scene.clone(), ..found }))
     }
 
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
@@ -154,10 +215,9 @@ impl Platform for HabitatPlatform {
         Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
     }
 
-    /// The way over the navmesh, as Habitat measures it.
+    /// The way over the navmesh, as Habitat measures it; `None` where there is a graph instead.
     fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
-        let feet = |frame: &Frame| frame.pose.position - DVec3::Z * EYE_M;
-        Ok(self.home(scene)?.ground.geodesic(feet(from), feet(to)).ok())
+        Ok(self.home(scene)?.way(from.pose.position, to.pose.position))
     }
 
     fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
@@ -165,12 +225,12 @@ impl Platform for HabitatPlatform {
     }
 
     fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
-        let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
+        let (_, files) = self.files_of(scene)?;
         Ok(Some(files.stage.clone()))
     }
 
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
-        let files = self.scenes.get(scene).ok_or_else(|| self.unknown(scene))?;
+        let (_, files) = self.files_of(scene)?;
         let all = files.all(&Stage::of(&files.stage)?);
         Ok(all.into_iter().chain(self.options.navmesh.clone()).collect())
     }

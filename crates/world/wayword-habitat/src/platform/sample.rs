@@ -1,21 +1,36 @@
 //! Random paths: the shortest way between two random places of the island that paths stay on, with frames along it.
 
-use super::home::Home;
+use super::{home::Home, walkable::Walkable};
 use crate::{axes::EYE_M, ground::stops_along};
 use rand::Rng;
 use wayword_core::{DVec3, Frame, Heading, Path, PathRequest, PlatformError, Target, path::Stop, rng};
 use wayword_world::{
-    graph_walk::target,
+    graph_walk::{self, target},
     wander::{Wander, wander},
 };
 
-/// A random path whose length is within `request`.
+/// A random path whose length is within `request`: over the ground, or along the graph where that is from a file.
 pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f64) -> Result<Path, PlatformError> {
+    match &home.walkable {
+        Some(walkable) => over_ground(home, walkable, request, seed, interval_m),
+        None => graph_walk::path(&home.id, &home.graph, request, seed, |viewpoint| {
+            home.labels_around(home.graph.position(viewpoint).unwrap_or_default(), Heading::NORTH)
+        }),
+    }
+}
+
+fn over_ground(
+    home: &Home,
+    walkable: &Walkable,
+    request: &PathRequest,
+    seed: u64,
+    interval_m: f64,
+) -> Result<Path, PlatformError> {
     let dice = rng(seed, &["habitat path", home.id.as_str()]);
-    let found = wander(&mut Walker { home, dice, interval_m }, &home.id, request, seed)?;
+    let found = wander(&mut Walker { home, walkable, dice, interval_m }, &home.id, request, seed)?;
     found.ok_or_else(|| PlatformError::NoSuchPath {
         scene: home.id.clone(),
-        request: refused(home, request),
+        request: refused(walkable, request),
         hint: "widen --metres",
     })
 }
@@ -23,22 +38,24 @@ pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f6
 /// Walks over the ground of a scene.
 struct Walker<'a, R> {
     home: &'a Home,
+    walkable: &'a Walkable,
     dice: R,
     interval_m: f64,
 }
 
 impl<R: Rng> Wander for Walker<'_, R> {
     fn ends(&mut self) -> Option<(DVec3, DVec3)> {
-        let mut place = || Some(self.home.ground.random_place(self.home.ground.main(), &mut self.dice)?.place);
+        let ground = &self.walkable.ground;
+        let mut place = || Some(ground.random_place(ground.main(), &mut self.dice)?.place);
         Some((place()?, place()?))
     }
 
     fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError> {
-        let ground = &self.home.ground;
+        let ground = &self.walkable.ground;
         let Ok(way) = ground.geodesic(from, to) else { return Ok(None) };
         let stops = stops_along(ground, &way, self.interval_m);
         // Habitat's agent is 1.5 m high, so its ground includes places where a person cannot stand upright.
-        let upright = |stop: &Stop| self.home.is_headroom(stop.position - DVec3::Z * EYE_M);
+        let upright = |stop: &Stop| self.walkable.is_headroom(stop.position - DVec3::Z * EYE_M);
         Ok(stops.iter().all(upright).then_some(stops))
     }
 
@@ -53,9 +70,9 @@ impl<R: Rng> Wander for Walker<'_, R> {
 
 /// The request in words, with the area of the ground: a scene in other units, or one that lies on its side, has almost
 /// none.
-fn refused(home: &Home, request: &PathRequest) -> String {
+fn refused(walkable: &Walkable, request: &PathRequest) -> String {
     let length_m = &request.length_m;
-    let ground_m2 = home.ground.islands_m2().nth(home.ground.main()).unwrap_or_default();
+    let ground_m2 = walkable.ground.islands_m2().nth(walkable.ground.main()).unwrap_or_default();
     format!(
         "{} to {} metres on its {ground_m2:.1} m2 of ground (a scene is read as metres with z up; if that is wrong, a \
          stage_config.json beside it must give units_to_meters, up and front)",

@@ -60,7 +60,7 @@ fn painted(meshes: &[Vec<[f32; 3]>], colours: &[[u8; 4]]) -> Vec<u8> {
     glb(&document, &bytes)
 }
 
-fn folder(has_labels: bool) -> tempfile::TempDir {
+pub(super) fn folder(has_labels: bool) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let paint = file([[90, 90, 90, 255], [200, 10, 10, 255]]);
     std::fs::write(folder.path().join("yard.glb"), &paint).unwrap();

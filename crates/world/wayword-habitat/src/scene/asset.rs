@@ -54,6 +54,24 @@ impl Asset {
         Ok(Self { root, buffers, beside })
     }
 
+    /// Checks that the bytes of every view are there, and every picture that lies beside the file: a download that was
+    /// cut short has lost some.
+    pub(super) fn check_views(&self) -> Result<(), String> {
+        for number in 0..self.root.buffer_views.len() {
+            self.view(Index::new(u32::try_from(number).unwrap_or(u32::MAX)))?;
+        }
+        for (number, image) in self.root.images.iter().enumerate() {
+            let Some(uri) = image.uri.as_deref().filter(|uri| !uri.starts_with("data:")) else { continue };
+            let file = target(uri).map(|target| self.beside.folder.join(target));
+            let there = file.and_then(|file| match file.is_file() {
+                true => Ok(()),
+                false => Err(format!("{} is not there", file.display())),
+            });
+            there.map_err(|reason| format!("image {number}: {reason}"))?;
+        }
+        Ok(())
+    }
+
     /// The bytes that a URI refers to.
     pub(super) fn beside(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
         self.beside.bytes(uri)

@@ -48,37 +48,17 @@ impl Model {
 
     pub(crate) fn read(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
         let asset = Asset::read(file)?;
-        let mut reading = Reading { asset: &asset, model: Self::default(), textures: BTreeMap::new(), plain: None };
+        let mut reading = Reading::of(&asset);
         reading.surfaces(file)?;
-        let most_corners = FREE_CORNERS + CORNERS_PER_BYTE.saturating_mul(asset.length());
-        let mut corners = 0;
-        for (number, place) in nodes::placed_meshes(&asset.root) {
-            let mesh = asset.root.meshes.get(number);
-            for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
-                let wrong = |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), HINT);
-                let Some(mut mesh) = primitive::read(&asset, primitive).map_err(wrong)? else { continue };
-                corners += mesh.positions.len() as u64 + 3 * mesh.triangles.len() as u64;
-                if corners > most_corners {
-                    let reason =
-                        format!("its meshes are placed so often that they have more than {most_corners} corners");
-                    return Err(FileError::new(file, reason, HINT));
-                }
-                mesh.material = match primitive.material.map(|material| material.value()) {
-                    Some(material) if material < asset.root.materials.len() => material,
-                    _ => reading.plain(),
-                };
-                reading.finish(&mut mesh, primitive);
-                for position in &mut mesh.positions {
-                    let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
-                    *position = wayword_from_habitat(placed).as_vec3();
-                }
-                if reading.plain == Some(mesh.material) && mesh.colours.is_empty() {
-                    light(&mut mesh);
-                }
-                reading.model.meshes.push(mesh);
-            }
-        }
-        Ok(reading.model)
+        reading.placed(file, habitat_from_asset)
+    }
+
+    /// Reads a file's triangles without decoding its pictures, of which it checks only that their bytes are there. That
+    /// takes a small part of the time and memory.
+    pub(crate) fn shape(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
+        let asset = Asset::read(file)?;
+        asset.check_views().map_err(|reason| FileError::new(file, reason, HINT))?;
+        Reading::of(&asset).placed(file, habitat_from_asset)
     }
 
     /// Its triangles.
@@ -109,7 +89,45 @@ struct Reading<'a> {
     plain: Option<usize>,
 }
 
-impl Reading<'_> {
+impl<'a> Reading<'a> {
+    fn of(asset: &'a Asset) -> Self {
+        Self { asset, model: Model::default(), textures: BTreeMap::new(), plain: None }
+    }
+
+    /// The triangles, placed in Wayword's frame.
+    fn placed(mut self, file: &Path, habitat_from_asset: DMat3) -> Result<Model, FileError> {
+        let asset = self.asset;
+        let most_corners = FREE_CORNERS + CORNERS_PER_BYTE.saturating_mul(asset.length());
+        let mut corners = 0;
+        for (number, place) in nodes::placed_meshes(&asset.root) {
+            let mesh = asset.root.meshes.get(number);
+            for (index, primitive) in mesh.iter().flat_map(|mesh| mesh.primitives.iter().enumerate()) {
+                let wrong = |reason| FileError::new(file, format!("mesh {number}, primitive {index}: {reason}"), HINT);
+                let Some(mut mesh) = primitive::read(asset, primitive).map_err(wrong)? else { continue };
+                corners += mesh.positions.len() as u64 + 3 * mesh.triangles.len() as u64;
+                if corners > most_corners {
+                    let reason =
+                        format!("its meshes are placed so often that they have more than {most_corners} corners");
+                    return Err(FileError::new(file, reason, HINT));
+                }
+                mesh.material = match primitive.material.map(|material| material.value()) {
+                    Some(material) if material < asset.root.materials.len() => material,
+                    _ => self.plain(),
+                };
+                self.finish(&mut mesh, primitive);
+                for position in &mut mesh.positions {
+                    let placed = habitat_from_asset * place.transform_point3(position.as_dvec3());
+                    *position = wayword_from_habitat(placed).as_vec3();
+                }
+                if self.plain == Some(mesh.material) && mesh.colours.is_empty() {
+                    light(&mut mesh);
+                }
+                self.model.meshes.push(mesh);
+            }
+        }
+        Ok(self.model)
+    }
+
     /// Reads the file's materials with their textures. Factors are used without conversion, because Habitat's unlit
     /// shader multiplies stored colours by them (Magnum's `FlatGL`).
     fn surfaces(&mut self, file: &Path) -> Result<(), FileError> {

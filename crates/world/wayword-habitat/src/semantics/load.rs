@@ -11,6 +11,7 @@ use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
+use wayword_core::RoomNames;
 use wayword_render::{Filter, Material, Mesh, Scene, Texture};
 
 const MAX_TEXT: u64 = 64 << 20;
@@ -38,6 +39,19 @@ pub(crate) fn load(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<O
     match &files.numbered {
         Some((mesh, text)) => numbered(mesh, text, habitat_from_asset).map(Some),
         None => Ok(None),
+    }
+}
+
+/// Reads the files as [`load`] does, but decodes no picture. Says where the names of rooms come from.
+pub(crate) fn check(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<RoomNames, FileError> {
+    if let Some((mesh, names)) = &files.painted {
+        hm3d::parse(&text(names, HM3D_HINT)?).map_err(|reason| FileError::new(names, reason, HM3D_HINT))?;
+        Model::shape(mesh, habitat_from_asset)?;
+        return Ok(RoomNames::Rules);
+    }
+    match &files.numbered {
+        Some((mesh, names)) => numbered(mesh, names, habitat_from_asset).map(|_| RoomNames::Dataset),
+        None => Ok(RoomNames::Unknown),
     }
 }
 

@@ -9,7 +9,7 @@ mod rooms;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use load::{SemanticFiles, load};
+pub(crate) use load::{SemanticFiles, check, load};
 
 use rooms::{Part, Rooms};
 use std::collections::BTreeMap;

@@ -4,11 +4,9 @@
 //! REVERIE's boxes, the `.house` file and the rooms of the viewpoints. Photographs are optional.
 
 mod boxes;
-mod connectivity;
 mod house_file;
 mod labels;
 mod layout;
-mod levels;
 mod object_positions;
 mod photographs;
 mod platform;

@@ -1,7 +1,6 @@
 //! The photographs of a viewpoint, and views made from them.
 
 use super::{
-    connectivity::Viewpoint,
     layout::{Layout, SkyboxFiles},
     read::{self, PICTURE_HINT},
     thirty_six::ThirtySix,
@@ -9,6 +8,7 @@ use super::{
 use glam::DMat3;
 use wayword_core::{Gaze, Image, PlatformError, SceneId};
 use wayword_render::{CubeMap, Face, sample_view};
+use wayword_world::connectivity::Viewpoint;
 
 const WIDTH_PX: u32 = 640;
 const HEIGHT_PX: u32 = 480;

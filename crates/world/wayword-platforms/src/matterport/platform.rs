@@ -2,7 +2,6 @@
 
 use super::{
     boxes::{self, Listed},
-    connectivity::Viewpoint,
     house_file::HouseObject,
     labels,
     layout::Layout,
@@ -19,7 +18,7 @@ use wayword_core::{
     Frame, Gaze, GroundTruth, Image, Label, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, Pose, Recent,
     SceneId, View, ViewpointGraph, ViewpointId,
 };
-use wayword_world::graph_walk;
+use wayword_world::{connectivity::Viewpoint, graph_walk};
 
 /// Number of viewpoints whose boxes are kept in memory.
 const BOXES_KEPT: usize = 256;

@@ -1,17 +1,21 @@
 //! One building in memory: its graph, cameras and rooms.
 
 use super::{
-    connectivity::{self, Connectivity, Viewpoint},
     house_file::{self, House},
     layout::Layout,
-    levels, read, rooms,
+    read, rooms,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::{Arc, OnceLock},
 };
-use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
-use wayword_world::region;
+use wayword_core::{ObjectId, PlatformError, SceneId, ViewpointGraph, ViewpointId};
+use wayword_world::{
+    connectivity::{self, Viewpoint},
+    region,
+};
+
+const GRAPH_HINT: &str = "copy the file again from Matterport3DSimulator's folder `connectivity`";
 
 /// A building.
 pub(crate) struct Scene {
@@ -39,7 +43,7 @@ impl Scene {
     /// If it does not exist, or one of its files is broken.
     pub(crate) fn load(layout: &Layout, scene: &SceneId) -> Result<Self, PlatformError> {
         let file = layout.connectivity(scene);
-        let read = connectivity::read(&file)?.ok_or_else(|| PlatformError::UnknownScene {
+        let read = connectivity::read(&file, GRAPH_HINT)?.ok_or_else(|| PlatformError::UnknownScene {
             scene: scene.to_string(),
             hint: format!(
                 "{} does not exist; copy it from Matterport3DSimulator's folder `connectivity`, or leave the items of this scene out",
@@ -48,13 +52,8 @@ impl Scene {
         })?;
         let house = layout.house(scene).map(|file| house_file::read(&file)).transpose()?.flatten();
         let rooms = layout.rooms(scene).map(|file| rooms::read(&file)).transpose()?.flatten();
-        let graph = graph(&read, house.as_ref()).map_err(|error| {
-            read::wrong(
-                &file,
-                error.to_string(),
-                "copy the file again from Matterport3DSimulator's folder `connectivity`",
-            )
-        })?;
+        let level = |viewpoint: &ViewpointId| house.as_ref().and_then(|house| house.level(viewpoint));
+        let graph = read.graph(level).map_err(|error| read::wrong(&file, error.to_string(), GRAPH_HINT))?;
         let viewpoints = read.viewpoints.into_iter().map(|viewpoint| (viewpoint.id.clone(), viewpoint)).collect();
         Ok(Self { graph: Arc::new(graph), viewpoints, house, rooms, objects: OnceLock::new() })
     }
@@ -70,19 +69,4 @@ impl Scene {
         let letter = listed.or_else(|| self.house.as_ref()?.room_letter(viewpoint))?;
         region::room(letter)
     }
-}
-
-fn graph(read: &Connectivity, house: Option<&House>) -> Result<ViewpointGraph, GraphError> {
-    let floors_m: Vec<f64> = read.viewpoints.iter().map(Viewpoint::floor_m).collect();
-    let by_height = levels::from_floor_heights(&floors_m);
-    let mut graph = ViewpointGraph::default();
-    for (viewpoint, by_height) in read.viewpoints.iter().zip(by_height) {
-        let level = house.and_then(|house| house.level(&viewpoint.id)).unwrap_or(by_height);
-        graph.add(viewpoint.id.clone(), viewpoint.position, Some(level))?;
-        graph.set_floor(&viewpoint.id, viewpoint.floor_m())?;
-    }
-    for (from, to) in &read.edges {
-        graph.join(&read.viewpoints[*from].id, &read.viewpoints[*to].id)?;
-    }
-    Ok(graph)
 }

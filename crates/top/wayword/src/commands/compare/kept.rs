@@ -5,7 +5,7 @@ use crate::{
     cli::{Compare, SwapName},
     error::Error,
     own_format::OwnFormat,
-    platforms,
+    platforms::{self, Place},
     run::{hash_of_file, short_hex},
     settings::{LABELS, Settings, nameable},
 };
@@ -37,6 +37,9 @@ pub(crate) struct Kept {
     /// The island of a Habitat navmesh, if one was named.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) island: Option<usize>,
+    /// Folder of the viewpoint graphs along which Habitat's scenes are walked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) connectivity: Option<PathBuf>,
     /// The items.
     pub(crate) episodes: PathBuf,
     /// Sets of instructions: name and source, in order. The source of `original` is empty.
@@ -112,6 +115,7 @@ impl Kept {
     pub(super) fn of(args: &Compare, settings: &Settings) -> Result<Self, Error> {
         nameable("--episodes", Some(&args.episodes))?;
         nameable("--data", settings.data.as_deref())?;
+        nameable("--connectivity", settings.connectivity.as_deref())?;
         let asked = if args.instructions.is_empty() { &vec![ORIGINAL.to_owned()] } else { &args.instructions };
         let mut instructions: Vec<(String, String)> = Vec::new();
         let mut inputs = BTreeMap::from([("episodes".to_owned(), hash_of_file(&args.episodes)?)]);
@@ -140,6 +144,7 @@ impl Kept {
             data: settings.data.as_deref().map(absolute).transpose()?,
             at: settings.at.clone(),
             island: settings.island,
+            connectivity: settings.connectivity.as_deref().map(absolute).transpose()?,
             episodes: absolute(&args.episodes)?,
             instructions,
             agents: args.agents.clone(),
@@ -174,7 +179,9 @@ impl Kept {
     /// # Errors
     /// When it cannot be opened.
     pub(super) fn platform(&self) -> Result<Box<dyn Platform>, Error> {
-        platforms::open_and_warn(&self.platform, self.data.as_deref(), self.at.as_deref(), self.island)
+        let Self { data, at, island, connectivity, .. } = self;
+        let (data, at, connectivity) = (data.as_deref(), at.as_deref(), connectivity.as_deref());
+        platforms::open_and_warn(&self.platform, Place { data, at, island: *island, connectivity })
     }
 }
 

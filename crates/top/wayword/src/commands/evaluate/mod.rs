@@ -34,12 +34,7 @@ struct Covered {
 
 pub(super) fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
     refuse_to_overwrite(args)?;
-    let platform = platforms::open_named(
-        args.platform.name(),
-        args.platform.data.as_deref(),
-        args.platform.at.as_deref(),
-        args.platform.island,
-    )?;
+    let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
     let episodes = episodes::read(&args.episodes, platform.as_ref())?;
     let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
     let (episodes, beyond) = episodes.split_at(limit);

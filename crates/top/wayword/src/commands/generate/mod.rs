@@ -24,6 +24,7 @@ use crate::{
     settings::{Job, Settings},
     styles::Measured,
     team::Team,
+    usable,
 };
 use keep::keep;
 use pace::Pace;
@@ -42,6 +43,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     if args.dry_run {
         Calls::rehearse(&job)?;
         let platform = platforms::open(&job.settings)?;
+        let job = Job { settings: usable::settled(&job.settings, platform.as_ref(), output)?, ..job };
         let estimate = Plan::writing(&job, platform.as_ref())?.estimate()?;
         output.data(&estimate, &estimate);
         return Ok(Exit::Done);
@@ -57,7 +59,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
 /// Warns of settings that this run ignores.
 fn warn_of_no_effect(settings: &Settings, output: &Output) {
     let asks_hops = settings.request.hops != PathRequest::default().hops;
-    if asks_hops && settings.episodes.is_none() && !has_hops(&settings.platform) {
+    if asks_hops && settings.episodes.is_none() && !has_hops(settings) {
         output.say(format_args!(
             "warning: --hops has no effect, because paths of platform {} have no hops; use --metres",
             settings.platform
@@ -105,12 +107,19 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
         Calls::ready(job, output)?;
     }
     let platform = platforms::open(&job.settings)?;
+    let is_new = !is_begun(folder);
+    let mut job = job.clone();
+    if is_new {
+        job.settings = usable::settled(&job.settings, platform.as_ref(), output)?;
+    }
+    let job = &job;
     let plan = Plan::writing(job, platform.as_ref())?;
     if is_recording {
         Calls::ready(job, output)?;
     }
     let settings = &plan.settings()?;
-    if !is_begun(folder) {
+    if is_new {
+        usable::tell_of_episodes(settings, &plan.items, platform.as_ref(), output)?;
         refuse_impossible_paths(&plan.items, settings, platform.as_ref())?;
     }
     // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
@@ -177,6 +186,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     }
     let mut summary = summary::summary(folder, &run, items.len(), calls.as_ref().map(Calls::spent), stopped)?;
     summary.detector = team.lookout().map(Searched::by);
+    summary.left_out = settings.left_out.clone();
     summary.calibration = settings.calibration.as_ref().map(|file| file.display().to_string());
     Ok(summary)
 }

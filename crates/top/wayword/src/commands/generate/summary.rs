@@ -10,8 +10,8 @@ use crate::{
     run::{FailedItem, Rejected, RunFolder, file, lines},
 };
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use std::{fmt, path::Path};
-use wayword_core::{Ambiguity, Form, Observation, Provenance, Verdict};
+use std::{collections::BTreeMap, fmt, path::Path};
+use wayword_core::{Ambiguity, Form, Lack, Observation, Provenance, Verdict};
 
 /// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -52,6 +52,9 @@ pub struct Summary {
     /// What a detector did in this command, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub detector: Option<Searched>,
+    /// The scenes that the run leaves out, with the reason.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub left_out: BTreeMap<String, Lack>,
     /// The file of `--calibration`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub calibration: Option<String>,
@@ -134,6 +137,7 @@ pub(super) fn summary(
         },
         roles: roles.unwrap_or_default(),
         detector: None,
+        left_out: BTreeMap::new(),
         calibration: None,
         spent,
         stopped: stopped.map(|stop| stop.reason),
@@ -251,6 +255,10 @@ impl fmt::Display for Summary {
         }
         if let (Some(why), 1..) = (&self.why_unfollowed, self.unfollowed) {
             writeln!(f, "not followed: {}; {}", count(self.unfollowed, "instruction"), tame(why))?;
+        }
+        if !self.left_out.is_empty() {
+            let names: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
+            writeln!(f, "left out: {} ({})", count(names.len(), "scene"), names.join(", "))?;
         }
         if let Some(file) = &self.calibration {
             writeln!(f, "calibration: {file}")?;

@@ -20,6 +20,7 @@ use crate::{
     run::fresh_id,
     settings::{Job, Perception, Settings, is_in_process},
     team::Team,
+    usable,
 };
 use serde::Serialize;
 use std::path::Path;
@@ -79,9 +80,10 @@ pub(super) fn run(args: &Perceive, output: &Output) -> Result<Exit, Error> {
     let mut asked = args.asked().or(config::read(args.config.as_deref())?);
     // As many random paths as views are enough, because each new path gives at least one view.
     asked.walks.paths = asked.walks.episodes.is_none().then_some(args.views);
-    let job = asked.job()?;
+    let mut job = asked.job()?;
     Calls::ready(&job, output)?;
     let platform = platforms::open(&job.settings)?;
+    job.settings = usable::settled(&job.settings, platform.as_ref(), output)?;
     let ways = args.perception.clone().filter(|asked| !asked.is_empty()).unwrap_or_else(|| ways(&job.settings));
     let measured = perceive(platform.as_ref(), &job, Extent { views: args.views, show: args.show }, &ways, output)?;
     if let (Some(file), Some(detector)) = (&args.figures, &measured.detector) {

@@ -62,7 +62,7 @@ pub(super) fn run(args: &View, output: &Output) -> Result<Exit, Error> {
 }
 
 pub(super) fn open(asked: &AskedPlatform) -> Result<Box<dyn Platform>, Error> {
-    platforms::open_named(asked.name(), asked.data.as_deref(), asked.at.as_deref(), asked.island)
+    platforms::open_at(asked.name(), asked.into())
 }
 
 /// The scene of a name, or the platform's first.

@@ -1,5 +1,7 @@
 //! `wayword doctor`: what works here, what does not, and what to do.
 
+mod scenes;
+
 use crate::{
     calls::Calls,
     cli::Doctor,
@@ -16,7 +18,7 @@ use crate::{
 use serde::Serialize;
 use std::fmt;
 use wayword_checks::Evidence;
-use wayword_core::{Gaze, Path};
+use wayword_core::{Condition, Gaze, Path};
 use wayword_remote::Level;
 
 /// How good or bad a finding is.
@@ -44,11 +46,20 @@ struct Finding {
 struct Report {
     /// What was found, in the order of the checks.
     findings: Vec<Finding>,
+    /// The scenes of the data, if they were to be examined.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    scenes: Vec<Condition>,
 }
 
 pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
-    let job = args.asked().or(config::read(args.config.as_deref())?).job()?;
-    let mut findings = vec![world_finding(&job.settings)];
+    let mut job = args.asked().or(config::read(args.config.as_deref())?).job()?;
+    let mut findings = Vec::new();
+    let mut examined = Ok(Vec::new());
+    if args.scenes {
+        examined = scenes::examine(&mut job.settings, output);
+        findings.extend(scenes::findings(&examined));
+    }
+    findings.push(world_finding(&job.settings));
     if job.settings.roles.prompts.is_some() {
         findings.push(match prompts(&job.settings) {
             Ok(prompts) => ok("prompts", format!("every template can be filled; their hash is {}", prompts.hash())),
@@ -79,7 +90,7 @@ pub(super) fn run(args: &Doctor, output: &Output) -> Result<Exit, Error> {
             }
         }
     }
-    let report = Report { findings };
+    let report = Report { findings, scenes: examined.unwrap_or_default() };
     output.data(&report, &report);
     let problems = report.findings.iter().any(|finding| finding.state == Grade::Problem);
     Ok(if problems { Exit::BadInput } else { Exit::Done })

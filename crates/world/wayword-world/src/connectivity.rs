@@ -1,13 +1,18 @@
 //! `SCAN_connectivity.json`: the viewpoints of a building, and between which of them one can walk straight.
 //!
 //! Format: Matterport3DSimulator's `connectivity/README.md`; a list of `{image_id, pose[16], included, visible[],
-//! unobstructed[], height}`, the pose row-major and in metres, z up.
+//! unobstructed[], height}`, the pose row-major and in metres, z up. `visible` is not read, so a file may leave it out.
 
-use super::read;
-use glam::{DMat3, DVec3};
+use crate::{
+    files::{json_if_there, wrong},
+    levels, values,
+};
 use serde_json::Value;
 use std::path::Path;
-use wayword_core::{PlatformError, ViewpointId};
+use wayword_core::{DMat3, DVec3, PlatformError, ViewpointGraph, ViewpointId, graph::GraphError};
+
+/// How the name of such a file ends, after the name of the scene.
+pub const ENDING: &str = "_connectivity.json";
 
 /// Most viewpoints of a building (the largest real one has 345); the table of edges grows with the square of this
 /// number.
@@ -15,45 +20,67 @@ const MAX_VIEWPOINTS: usize = 4096;
 /// Largest file, bytes; the largest real one has 1.5 MB. Parsed in memory, a list of zeros takes about fifty times its
 /// size.
 const MAX_BYTES: u64 = 4 << 20;
-const HINT: &str = "copy the file again from Matterport3DSimulator's folder `connectivity`";
 
 /// A building's viewpoints.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Connectivity {
+pub struct Connectivity {
     /// The included viewpoints, in the file's order.
-    pub(crate) viewpoints: Vec<Viewpoint>,
+    pub viewpoints: Vec<Viewpoint>,
     /// Pairs of indices into `viewpoints`.
-    pub(crate) edges: Vec<(usize, usize)>,
+    pub edges: Vec<(usize, usize)>,
 }
 
 /// A place from which a panorama was taken.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Viewpoint {
-    pub(crate) id: ViewpointId,
+pub struct Viewpoint {
+    /// Its name.
+    pub id: ViewpointId,
     /// Position of the camera, metres, world frame.
-    pub(crate) position: DVec3,
+    pub position: DVec3,
     /// The camera's height above the floor, metres.
-    pub(crate) height_m: f64,
+    pub height_m: f64,
     /// The 3x3 part of the pose: it rotates the skybox's axes to the world's.
-    pub(crate) world_from_skybox: DMat3,
+    pub world_from_skybox: DMat3,
 }
 
 impl Viewpoint {
     /// Height of the floor below the camera, metres, world frame.
-    pub(crate) fn floor_m(&self) -> f64 {
+    #[must_use]
+    pub fn floor_m(&self) -> f64 {
         self.position.z - self.height_m
     }
 }
 
-/// Reads a connectivity file; `None` if there is none.
+impl Connectivity {
+    /// The viewpoint graph. A viewpoint's storey is what `level` says, else it comes from the heights of the floors.
+    ///
+    /// # Errors
+    /// When two viewpoints have one name.
+    pub fn graph(&self, level: impl Fn(&ViewpointId) -> Option<u32>) -> Result<ViewpointGraph, GraphError> {
+        let floors_m: Vec<f64> = self.viewpoints.iter().map(Viewpoint::floor_m).collect();
+        let by_height = levels::from_floor_heights(&floors_m);
+        let mut graph = ViewpointGraph::default();
+        for (viewpoint, by_height) in self.viewpoints.iter().zip(by_height) {
+            let level = level(&viewpoint.id).unwrap_or(by_height);
+            graph.add(viewpoint.id.clone(), viewpoint.position, Some(level))?;
+            graph.set_floor(&viewpoint.id, viewpoint.floor_m())?;
+        }
+        for (from, to) in &self.edges {
+            graph.join(&self.viewpoints[*from].id, &self.viewpoints[*to].id)?;
+        }
+        Ok(graph)
+    }
+}
+
+/// Reads a connectivity file; `None` if there is none. `hint` says what to do about a broken one.
 ///
 /// # Errors
 /// If the file does not have this format; the message names the viewpoint and the field.
-pub(crate) fn read(file: &Path) -> Result<Option<Connectivity>, PlatformError> {
-    let Some(bytes) = read::json_if_there(file, MAX_BYTES, HINT)? else {
+pub fn read(file: &Path, hint: &'static str) -> Result<Option<Connectivity>, PlatformError> {
+    let Some(bytes) = json_if_there(file, MAX_BYTES, hint)? else {
         return Ok(None);
     };
-    parse(&bytes).map(Some).map_err(|reason| read::wrong(file, reason, HINT))
+    parse(&bytes).map(Some).map_err(|reason| wrong(file, reason, hint))
 }
 
 fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
@@ -81,14 +108,14 @@ fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
 }
 
 fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
-    let id = ViewpointId::new(read::text(item, "image_id")?).map_err(|error| format!("field `image_id`: {error}"))?;
+    let id = ViewpointId::new(values::text(item, "image_id")?).map_err(|error| format!("field `image_id`: {error}"))?;
     let named = |reason| format!("{id}: {reason}");
-    if !read::flag(read::field(item, "included").map_err(named)?, "included").map_err(named)? {
+    if !values::flag(values::field(item, "included").map_err(named)?, "included").map_err(named)? {
         // The pose of a viewpoint that is not included is not used, and it may not consist of numbers.
         return Ok(None);
     }
     let pose = pose(item).map_err(named)?;
-    let height_m = read::number(read::field(item, "height").map_err(named)?, "height").map_err(named)?;
+    let height_m = values::number(values::field(item, "height").map_err(named)?, "height").map_err(named)?;
     Ok(Some(Viewpoint {
         position: DVec3::new(pose[3], pose[7], pose[11]),
         height_m,
@@ -100,25 +127,25 @@ fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
 }
 
 fn pose(item: &Value) -> Result<[f64; 16], String> {
-    let numbers = read::list(item, "pose")?;
+    let numbers = values::list(item, "pose")?;
     if numbers.len() != 16 {
         return Err(format!("field `pose` has {} numbers, expected 16", numbers.len()));
     }
     let mut pose = [0.0; 16];
     for (place, value) in pose.iter_mut().zip(numbers) {
-        *place = read::number(value, "pose")?;
+        *place = values::number(value, "pose")?;
     }
     Ok(pose)
 }
 
 fn neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
-    let flags = read::list(item, "unobstructed")?;
+    let flags = values::list(item, "unobstructed")?;
     if flags.len() != count {
         return Err(format!("field `unobstructed` has length {}, but the list of viewpoints has {count}", flags.len()));
     }
     let mut open = Vec::new();
     for (other, value) in flags.iter().enumerate() {
-        if read::flag(value, "unobstructed")? {
+        if values::flag(value, "unobstructed")? {
             open.push(other);
         }
     }
@@ -128,6 +155,7 @@ fn neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use serde_json::json;
 
     fn item(id: &str, included: bool, x: f64, unobstructed: &[bool]) -> Value {
@@ -171,5 +199,48 @@ mod tests {
         assert_eq!(short, "viewpoint 0: field `unobstructed` has length 0, but the list of viewpoints has 1");
         assert!(parsed(&json!([item("../a", true, 0.0, &[false])])).unwrap_err().contains("path separators"));
         assert!(parse(b"[{\"pose\": [NaN]}]").unwrap_err().contains("is not a JSON list"));
+    }
+
+    /// A file of `count` viewpoints in a row, each joined with the next.
+    fn row(count: usize) -> Value {
+        let open = |at: usize| (0..count).map(|other| at.abs_diff(other) == 1).collect::<Vec<bool>>();
+        (0..count).map(|at| item(&format!("v{at}"), true, at as f64, &open(at))).collect()
+    }
+
+    #[test]
+    fn a_file_without_what_is_not_read_is_read() {
+        let mut bare = row(2);
+        bare[0].as_object_mut().unwrap().remove("visible");
+        bare[0]["pose"] = json!([0, 0, 0, 7, 0, 0, 0, 2, 0, 0, 0, 1.6, 0, 0, 0, 1]);
+        let read = parsed(&bare).unwrap();
+        assert_eq!((read.viewpoints[0].position, read.edges.len()), (DVec3::new(7.0, 2.0, 1.6), 2));
+    }
+
+    proptest! {
+        #[test]
+        fn a_field_that_is_missing_or_of_another_kind_is_refused_by_name(
+            count in 1..9_usize, at in any::<prop::sample::Index>(), field in 0..5_usize, is_gone in any::<bool>()
+        ) {
+            let (mut file, number) = (row(count), at.index(count));
+            let name = ["image_id", "pose", "included", "unobstructed", "height"][field];
+            if is_gone {
+                file[number].as_object_mut().unwrap().remove(name);
+            } else {
+                file[number][name] = json!({ "a": 1 });
+            }
+            let refused = parsed(&file).unwrap_err();
+            let told = format!("viewpoint {number}: ");
+            prop_assert!(refused.starts_with(&told) && refused.contains(&format!("`{name}`")), "{}", refused);
+        }
+
+        #[test]
+        fn edges_are_those_between_included_viewpoints(count in 1..9_usize, left_out in any::<prop::sample::Index>()) {
+            let (mut file, gone) = (row(count), left_out.index(count));
+            file[gone]["included"] = json!(false);
+            let read = parsed(&file).unwrap();
+            let ends = usize::from(gone > 0) + usize::from(gone + 1 < count);
+            prop_assert_eq!(read.edges.len(), 2 * (count - 1 - ends));
+            prop_assert_eq!(read.graph(|_| None).unwrap().len(), count - 1);
+        }
     }
 }

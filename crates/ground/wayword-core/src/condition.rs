@@ -1,0 +1,109 @@
+//! What the files of a scene offer, before a run uses them.
+
+use crate::SceneId;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What the files of a scene offer, and what they lack.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Condition {
+    /// The scene.
+    pub scene: SceneId,
+    /// Whether its pictures can be drawn.
+    pub has_pictures: bool,
+    /// How large its viewpoint graph is, where that comes from a file.
+    pub graph: Option<GraphSize>,
+    /// The number of its storeys, where a graph tells it.
+    pub storeys: Option<u32>,
+    /// Whether its objects are known.
+    pub has_labels: bool,
+    /// Where the names of its rooms come from.
+    pub rooms: RoomNames,
+    /// How its viewpoint graph lies in it, where that was examined.
+    pub fit: Option<Fit>,
+    /// What is missing, although the scene can be used.
+    pub lacks: Vec<Lack>,
+    /// Why the scene cannot be used; `None` if it can.
+    pub unusable: Option<Lack>,
+}
+
+/// How large a viewpoint graph is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct GraphSize {
+    /// Its viewpoints.
+    pub viewpoints: usize,
+    /// Its edges, each counted once.
+    pub edges: usize,
+}
+
+/// Where the names of rooms come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RoomNames {
+    /// The dataset names them.
+    Dataset,
+    /// Rules make them from labels.
+    Rules,
+    /// They are not known.
+    Unknown,
+}
+
+/// How a viewpoint graph lies in its scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Fit {
+    /// Viewpoints.
+    pub viewpoints: usize,
+    /// Viewpoints with a floor below them, where the floor of an eye is.
+    pub over_floor: usize,
+    /// Edges that were examined.
+    pub edges: usize,
+    /// Edges among these that cross a wall.
+    pub through_walls: usize,
+}
+
+/// Something that is missing or wrong, and what to do.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Lack {
+    /// What it is.
+    pub what: String,
+    /// What to do.
+    pub hint: String,
+}
+
+impl Condition {
+    /// The condition of a scene that cannot be used, and of which nothing else is known.
+    #[must_use]
+    pub fn unusable(scene: SceneId, why: Lack) -> Self {
+        Self {
+            scene,
+            has_pictures: false,
+            graph: None,
+            storeys: None,
+            has_labels: false,
+            rooms: RoomNames::Unknown,
+            fit: None,
+            lacks: Vec::new(),
+            unusable: Some(why),
+        }
+    }
+}
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { viewpoints, over_floor, edges, through_walls } = self;
+        write!(
+            f,
+            "{over_floor} of {viewpoints} viewpoints stand over a floor, {through_walls} of {edges} edges cross a wall"
+        )
+    }
+}
+
+impl fmt::Display for RoomNames {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Dataset => "rooms",
+            Self::Rules => "rooms by rules",
+            Self::Unknown => "no rooms",
+        })
+    }
+}

@@ -1,0 +1,49 @@
+//! The viewpoint graph of a scene from a file in Matterport's format.
+
+use super::fit;
+use crate::{columns::Columns, fault::FileError, scene::Model};
+use std::path::Path;
+use wayword_core::{DVec3, PlatformError, ViewpointGraph};
+use wayword_world::connectivity::{self, Connectivity};
+
+const HINT: &str = "get the graph again from where it was published, or take it out of --connectivity";
+/// How far beside an edge a view may be taken, metres.
+const BESIDE_M: f64 = 0.5;
+/// How far above or below an edge: a robot's camera is lower than a person's eye. Metres.
+const ABOVE_M: f64 = 2.0;
+
+/// Reads a graph's file.
+pub(super) fn connectivity(file: &Path) -> Result<Connectivity, PlatformError> {
+    connectivity::read(file, HINT)?.ok_or_else(|| FileError::new(file, "there is no such file", HINT).into())
+}
+
+/// A graph as it is walked along. With `model`, a graph that does not lie in it is refused.
+pub(super) fn read(file: &Path, model: Option<&Model>) -> Result<ViewpointGraph, PlatformError> {
+    let connectivity = connectivity(file)?;
+    if let Some(model) = model {
+        let judged = fit::judge(&Columns::with_walls(model.triangles()), &connectivity);
+        judged.map_err(|misfit| FileError::new(file, misfit.reason, misfit.hint))?;
+    }
+    build(file, &connectivity).map_err(PlatformError::from)
+}
+
+/// The graph of a file that has been read.
+pub(super) fn build(file: &Path, connectivity: &Connectivity) -> Result<ViewpointGraph, FileError> {
+    connectivity.graph(|_| None).map_err(|error| FileError::new(file, error.to_string(), HINT))
+}
+
+/// Whether a place lies at a viewpoint or on the way along an edge, or little beside.
+pub(super) fn passes(graph: &ViewpointGraph, eye: DVec3) -> bool {
+    let place = |viewpoint| graph.position(viewpoint);
+    let near = |on_way: DVec3| {
+        let off = eye - on_way;
+        off.truncate().length() <= BESIDE_M && off.z.abs() <= ABOVE_M
+    };
+    let along = |from: DVec3, to: DVec3| {
+        let way = (to - from).truncate();
+        let share = (eye - from).truncate().dot(way) / way.length_squared();
+        near(from.lerp(to, if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }))
+    };
+    graph.viewpoints().filter_map(place).any(near)
+        || graph.edges().any(|(from, to, _)| place(from).zip(place(to)).is_some_and(|(from, to)| along(from, to)))
+}

@@ -1,0 +1,184 @@
+//! Which viewpoint graph belongs to which scene: `SCENE_connectivity.json` in a folder.
+
+use super::files::{MAX_ENTRIES, SceneFiles};
+use crate::{fault::FileError, scene::stem};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+use wayword_core::{Lack, SceneId};
+use wayword_world::connectivity::ENDING;
+
+const HINT: &str = "give --connectivity the folder with the files SCENE_connectivity.json";
+
+/// Scenes with their graphs.
+#[derive(Debug, Default)]
+pub(super) struct Pairs {
+    pub(super) scenes: BTreeMap<SceneId, SceneFiles>,
+    /// What is in one of the two folders and cannot be used.
+    pub(super) unpaired: BTreeMap<SceneId, Lack>,
+    /// Other names of scenes, which episodes may use.
+    pub(super) others: BTreeMap<SceneId, SceneId>,
+}
+
+/// Pairs scenes with the graphs of a folder.
+///
+/// HM3D's scenes are numbered: the folder `00800-TEEsavR23oF` holds `TEEsavR23oF.basis.glb`, and graphs have either
+/// name. A scene is called by its number where the folder or the graph tells it, because official splits go by it.
+pub(super) fn pair(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Result<Pairs, FileError> {
+    let mut graphs = graphs(folder)?;
+    let mut taken: BTreeMap<PathBuf, SceneId> = BTreeMap::new();
+    let mut pairs = Pairs::default();
+    for (id, files) in scenes {
+        let (stem, numbered) = names(&files.stage);
+        let of_graph = graphs.keys().find(|name| number_of(name, &stem)).cloned();
+        let candidates = [numbered.clone(), of_graph.clone(), Some(stem.clone())];
+        let found = candidates.into_iter().flatten().find_map(|name| Some((graphs.get(&name)?.clone(), name)));
+        let Some((graph, name)) = found else {
+            pairs.unpaired.insert(id, no_graph(&files, folder, &stem, numbered.as_deref()));
+            continue;
+        };
+        if let Some(first) = taken.get(&graph) {
+            pairs.unpaired.insert(id, taken_already(&files, &graph, first));
+            continue;
+        }
+        let called = numbered.or(of_graph).and_then(|name| SceneId::new(name).ok());
+        let called = called.filter(|called| !pairs.scenes.contains_key(called)).unwrap_or_else(|| id.clone());
+        for other in [Some(id), SceneId::new(name).ok(), SceneId::new(stem).ok()].into_iter().flatten() {
+            if other != called {
+                pairs.others.entry(other).or_insert_with(|| called.clone());
+            }
+        }
+        taken.insert(graph.clone(), called.clone());
+        pairs.scenes.insert(called, SceneFiles { graph: Some(graph), ..files });
+    }
+    graphs.retain(|_, file| !taken.contains_key(file));
+    for (name, file) in graphs {
+        if let Ok(id) = SceneId::new(name.as_str())
+            && !pairs.scenes.contains_key(&id)
+        {
+            pairs.unpaired.entry(id).or_insert_with(|| no_scene(&file, &name));
+        }
+    }
+    Ok(pairs)
+}
+
+/// The graphs of a folder by the names of their scenes.
+fn graphs(folder: &Path) -> Result<BTreeMap<String, PathBuf>, FileError> {
+    let wrong = |error: std::io::Error| FileError::new(folder, error.to_string(), HINT);
+    let mut graphs = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).map_err(wrong)?.take(MAX_ENTRIES) {
+        let file = entry.map_err(wrong)?.path();
+        let name = file.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_suffix(ENDING));
+        if let Some(name) = name.filter(|name| !name.is_empty()) {
+            graphs.insert(name.to_owned(), file);
+        }
+    }
+    if graphs.is_empty() {
+        return Err(FileError::new(folder, format!("contains no viewpoint graph: no file ends in {ENDING}"), HINT));
+    }
+    Ok(graphs)
+}
+
+/// A scene's own name, and the numbered one if its folder has that.
+fn names(stage: &Path) -> (String, Option<String>) {
+    let text = |part: Option<&std::ffi::OsStr>| part.and_then(|part| part.to_str()).unwrap_or_default().to_owned();
+    let stem = stem(&text(stage.file_name())).to_owned();
+    let folder = text(stage.parent().and_then(Path::file_name));
+    let numbered = number_of(&folder, &stem).then_some(folder);
+    (stem, numbered)
+}
+
+/// Whether a name is that of a scene of HM3D with its number before it.
+fn number_of(name: &str, stem: &str) -> bool {
+    let number = name.strip_suffix(stem).and_then(|number| number.strip_suffix('-'));
+    number.is_some_and(|number| number.len() == 5 && number.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+fn no_graph(files: &SceneFiles, folder: &Path, stem: &str, numbered: Option<&str>) -> Lack {
+    let name = numbered.unwrap_or(stem);
+    Lack {
+        what: format!("{}: there is no viewpoint graph for it in {}", files.stage.display(), folder.display()),
+        hint: format!("put {name}{ENDING} there, or use the scene without --connectivity, over its navmesh"),
+    }
+}
+
+fn taken_already(files: &SceneFiles, graph: &Path, first: &SceneId) -> Lack {
+    Lack {
+        what: format!("{}: scene {first} has the graph {} already", files.stage.display(), graph.display()),
+        hint: "give --data a folder in which each scene is once".to_owned(),
+    }
+}
+
+fn no_scene(graph: &Path, name: &str) -> Lack {
+    let stem = name.split_once('-').map_or(name, |(_, stem)| stem);
+    Lack {
+        what: format!("{}: there is no scene for this graph", graph.display()),
+        hint: format!("put {name}.glb, or {name}/{stem}.basis.glb of HM3D, below --data"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(files: &[&str]) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for file in files {
+            let file = folder.path().join(file);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, "").unwrap();
+        }
+        folder
+    }
+
+    fn paired(files: &[&str]) -> Pairs {
+        let folder = folder(files);
+        pair(super::super::files::scenes(&folder.path().join("s")).unwrap(), &folder.path().join("g")).unwrap()
+    }
+
+    fn texts<V>(of: &BTreeMap<SceneId, V>) -> Vec<&str> {
+        of.keys().map(SceneId::as_str).collect()
+    }
+
+    #[test]
+    fn graphs_of_either_name_belong_to_a_numbered_scene() {
+        let pairs = paired(&[
+            "s/hm3d/00800-TEEsavR23oF/TEEsavR23oF.basis.glb",
+            "s/hm3d/00010-DBjEcHFg4oq/DBjEcHFg4oq.basis.glb",
+            "s/flat/vLpv2VX547B.glb",
+            "s/mp3d/17DRP5sb8fy/17DRP5sb8fy.glb",
+            "g/00800-TEEsavR23oF_connectivity.json",
+            "g/DBjEcHFg4oq_connectivity.json",
+            "g/00009-vLpv2VX547B_connectivity.json",
+            "g/17DRP5sb8fy_connectivity.json",
+            "g/scans.txt",
+        ]);
+        let ids = ["00009-vLpv2VX547B", "00010-DBjEcHFg4oq", "00800-TEEsavR23oF", "17DRP5sb8fy"];
+        assert_eq!(texts(&pairs.scenes), ids);
+        assert!(pairs.unpaired.is_empty(), "{pairs:?}");
+        assert_eq!(pairs.others[&SceneId::new("TEEsavR23oF").unwrap()].as_str(), "00800-TEEsavR23oF");
+        assert_eq!(texts(&pairs.others), ["DBjEcHFg4oq", "TEEsavR23oF", "vLpv2VX547B"]);
+    }
+
+    #[test]
+    fn what_has_no_partner_is_named_with_what_to_do() {
+        let pairs = paired(&["s/a.glb", "s/b.glb", "s/again/a.glb", "g/a_connectivity.json", "g/c_connectivity.json"]);
+        assert_eq!(texts(&pairs.scenes), ["a"]);
+        let told = |name: &str| &pairs.unpaired[&SceneId::new(name).unwrap()];
+        assert!(told("b").what.contains("b.glb: there is no viewpoint graph for it in"), "{pairs:?}");
+        assert!(told("b").hint.contains("put b_connectivity.json there"), "{pairs:?}");
+        assert!(told("c").what.contains("c_connectivity.json: there is no scene for this graph"), "{pairs:?}");
+        assert!(pairs.unpaired.values().any(|lack| lack.what.contains("has the graph")), "{pairs:?}");
+        assert_eq!(pairs.unpaired.len(), 3);
+    }
+
+    #[test]
+    fn a_folder_without_graphs_is_refused() {
+        let folder = folder(&["s/a.glb", "g/readme.txt"]);
+        let scenes = super::super::files::scenes(&folder.path().join("s")).unwrap();
+        let told = |name: &str| pair(scenes.clone(), &folder.path().join(name)).unwrap_err().to_string();
+        assert!(told("g").contains("contains no viewpoint graph") && told("g").contains("--connectivity"));
+        assert!(told("nowhere").contains("nowhere"));
+    }
+}

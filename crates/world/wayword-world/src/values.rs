@@ -1,0 +1,72 @@
+//! Takes values out of JSON that comes from outside, and says in words what is wrong with them.
+
+use serde_json::Value;
+
+/// Largest absolute value of a coordinate in a building, metres.
+const MAX_COORDINATE_M: f64 = 1e6;
+
+/// A finite coordinate of plausible size, or what is wrong with it, in words.
+///
+/// # Errors
+/// When it is not.
+pub fn coordinate(number: f64) -> Result<f64, String> {
+    if number.is_finite() && number.abs() <= MAX_COORDINATE_M {
+        Ok(number)
+    } else {
+        Err(format!("{number} is not a plausible coordinate"))
+    }
+}
+
+/// A field of an item.
+///
+/// # Errors
+/// When it is missing.
+pub fn field<'a>(item: &'a Value, name: &str) -> Result<&'a Value, String> {
+    item.get(name).ok_or_else(|| format!("field `{name}` is missing"))
+}
+
+/// A list in a field of an item.
+///
+/// # Errors
+/// When it is missing, or no list.
+pub fn list<'a>(item: &'a Value, name: &str) -> Result<&'a [Value], String> {
+    let found = field(item, name)?;
+    found.as_array().map(Vec::as_slice).ok_or_else(|| format!("field `{name}` is {}, not a list", kind(found)))
+}
+
+/// A text in a field of an item.
+///
+/// # Errors
+/// When it is missing, or no text.
+pub fn text<'a>(item: &'a Value, name: &str) -> Result<&'a str, String> {
+    let found = field(item, name)?;
+    found.as_str().ok_or_else(|| format!("field `{name}` is {}, not a text", kind(found)))
+}
+
+/// A flag.
+///
+/// # Errors
+/// When it is neither true nor false.
+pub fn flag(value: &Value, name: &str) -> Result<bool, String> {
+    value.as_bool().ok_or_else(|| format!("field `{name}` holds {}, not true or false", kind(value)))
+}
+
+/// A coordinate.
+///
+/// # Errors
+/// When it is no number, or not a plausible coordinate.
+pub fn number(value: &Value, name: &str) -> Result<f64, String> {
+    let found = value.as_f64().ok_or_else(|| format!("field `{name}` holds {}, not a number", kind(value)))?;
+    coordinate(found).map_err(|reason| format!("field `{name}`: {reason}"))
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "true or false",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a text",
+        Value::Array(_) => "a list",
+        Value::Object(_) => "an object",
+    }
+}
