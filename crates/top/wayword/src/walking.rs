@@ -37,8 +37,8 @@ impl Scenes {
         let kind = match settings.platform.as_str() {
             "house" => return Ok(Self::houses([width_px, height_px])),
             "habitat" => {
-                let options =
-                    HabitatOptions { width_px, height_px, island: settings.island, ..HabitatOptions::default() };
+                let (island, connectivity) = (settings.island, settings.connectivity.clone());
+                let options = HabitatOptions { width_px, height_px, island, connectivity, ..HabitatOptions::default() };
                 let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
                 Kind::Habitat(HabitatPlatform::open(data, options, Arc::new(crate::output::pass_on))?)
             }

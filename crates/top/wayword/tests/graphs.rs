@@ -53,7 +53,8 @@ fn spoil(building: &Building, [cut, turned, bare]: [usize; 3]) {
 const WORLD: [&str; 6] = ["--platform", "habitat", "--data", "scenes", "--connectivity", "graphs"];
 
 fn generate(building: &Building, more: &[&str]) -> common::Ran {
-    let usual = ["--style", "r2r", "--no-route", "--candidates", "1", "--metres", "2..9", "--hops", "1..2", "--out", "run"];
+    let usual =
+        ["--style", "r2r", "--no-route", "--candidates", "1", "--metres", "2..9", "--hops", "1..2", "--out", "run"];
     building.wayword(&[&["generate"], &WORLD[..], &usual, more].concat())
 }
 
