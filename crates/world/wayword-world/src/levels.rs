@@ -14,7 +14,7 @@ const MIN_SUPPORT: f64 = 2.0;
 /// The storeys of viewpoints whose floors lie at the given heights (metres, any origin).
 ///
 /// A storey is a height at which many viewpoints stand. Heights become storeys in the order of their support, the
-/// largest first, if they are at least [`MIN_STOREY_M`] from the storeys before. Every viewpoint, also one on stairs,
+/// largest first, if they are at least 2.2 m from the storeys before. Every viewpoint, also one on stairs,
 /// belongs to the nearest storey. With these constants the result agrees with 95 % of the REVERIE texts that name a
 /// level.
 #[must_use]

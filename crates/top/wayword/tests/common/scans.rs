@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 use std::{f64::consts::FRAC_1_SQRT_2, fs, path::Path};
-use wayword_core::{DVec3, ViewpointGraph};
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
 use wayword_house::{EYE_M, Ground, House, generate, glb, semantic_glb, semantic_txt, viewpoint_graph};
 
 /// The first houses of one storey.
@@ -25,15 +25,25 @@ pub(crate) fn write_scan(house: &House, folder: &Path, name: &str, ending: &str)
     fs::write(folder.join(format!("{name}.semantic.txt")), semantic_txt(house)).unwrap();
 }
 
+/// The first viewpoint of a graph and those that are nearest to it on foot, from the nearest. The graphs of the tests include
+/// no others, because a run looks from every viewpoint.
+pub(crate) fn included(graph: &ViewpointGraph) -> Vec<&ViewpointId> {
+    const MOST: usize = 8;
+    let first = graph.viewpoints().next().unwrap();
+    let mut near: Vec<_> = graph.distances_from(first).unwrap().into_iter().collect();
+    near.sort_by(|a, b| a.1.total_cmp(&b.1));
+    near.into_iter().map(|(id, _)| id).take(MOST).collect()
+}
+
 /// A graph in Matterport's format, with `place` saying how a position is written.
 pub(crate) fn connectivity(graph: &ViewpointGraph, place: impl Fn(DVec3) -> DVec3) -> Value {
-    let all: Vec<_> = graph.viewpoints().collect();
+    let (all, included): (Vec<_>, _) = (graph.viewpoints().collect(), included(graph));
     let item = |id| {
         let open = graph.neighbours(id);
         let open: Vec<bool> = all.iter().map(|other| open.contains(other)).collect();
         let DVec3 { x, y, z } = place(graph.position(id).unwrap());
         json!({
-            "image_id": id, "included": true, "height": EYE_M, "unobstructed": open, "visible": open,
+            "image_id": id, "included": included.contains(&id), "height": EYE_M, "unobstructed": open, "visible": open,
             "pose": [0.0, -1.0, 0.0, x, 0.0, 0.0, -1.0, y, 1.0, 0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0],
         })
     };
