@@ -4,6 +4,7 @@ use super::{
     light::RoomLight,
     model::{Furniture, House},
     objects::shell_id,
+    outlook::outlooks,
     shapes::{Look, Part, Shape, shape},
     structure,
     surface::{Pattern, Surface},
@@ -47,9 +48,10 @@ pub(super) fn draw(house: &House) -> Drawing {
             lights[if below == is_below { opening.room } else { beyond }].on_thing(at, normal)
         });
     }
+    let outlooks = outlooks(house);
     for window in &house.windows {
         let light = &lights[window.room];
-        drawing.add(structure::window(house, window), window.id, |at, normal| light.on_thing(at, normal));
+        drawing.add(structure::window(house, window, &outlooks), window.id, |at, normal| light.on_thing(at, normal));
     }
     if let Some(stairs) = &house.stairs {
         let light = &lights[stairs.room];
@@ -85,6 +87,8 @@ fn standing(piece: &Furniture) -> Shape {
 struct Collector {
     meshes: Vec<Mesh>,
     materials: Vec<Material>,
+    /// The pattern of each texture that some material uses, in order of first use.
+    patterns: Vec<Pattern>,
     known: BTreeMap<(Pattern, [u8; 3]), usize>,
 }
 
@@ -100,9 +104,15 @@ impl Collector {
     }
 
     fn material(&mut self, Surface { pattern, rgb, .. }: Surface) -> usize {
-        let materials = &mut self.materials;
+        let (materials, patterns) = (&mut self.materials, &mut self.patterns);
         *self.known.entry((pattern, rgb)).or_insert_with(|| {
-            let texture = Pattern::ALL.iter().position(|each| *each == pattern).filter(|_| pattern != Pattern::Plain);
+            let texture = (pattern != Pattern::Plain).then(|| {
+                let seen = patterns.iter().position(|each| *each == pattern);
+                seen.unwrap_or_else(|| {
+                    patterns.push(pattern);
+                    patterns.len() - 1
+                })
+            });
             let [r, g, b] = rgb.map(|channel| f32::from(channel) / 255.0);
             materials.push(Material { base_colour: [r, g, b, 1.0], texture, double_sided: false });
             materials.len() - 1
@@ -110,6 +120,7 @@ impl Collector {
     }
 
     fn finish(self) -> Drawing {
-        Drawing { meshes: self.meshes, materials: self.materials, textures: textures::all() }
+        let textures = self.patterns.into_iter().map(textures::of).collect();
+        Drawing { meshes: self.meshes, materials: self.materials, textures }
     }
 }
