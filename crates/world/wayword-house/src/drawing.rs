@@ -1,9 +1,10 @@
 //! A house as meshes with materials, textures and baked light.
 
 use super::{
-    light::RoomLight,
+    light::{Factors, RoomLight, cut},
     model::{Furniture, House},
     objects::shell_id,
+    outlook::outlooks,
     shapes::{Look, Part, Shape, shape},
     structure,
     surface::{Pattern, Surface},
@@ -12,6 +13,11 @@ use super::{
 use glam::Vec3;
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
+
+/// Floors and walls are cut down to about this length where their light changes, metres.
+const SHELL_M: f32 = 0.055;
+/// The same for everything else, metres.
+const THING_M: f32 = 0.12;
 
 /// Everything that a renderer or a file format needs.
 pub(super) struct Drawing {
@@ -33,7 +39,7 @@ pub(super) fn draw(house: &House) -> Drawing {
     for (index, light) in lights.iter().enumerate() {
         let shell = [structure::floor(house, index), structure::walls(house, index), structure::ceiling(house, index)];
         for (part, shape) in shell.into_iter().enumerate() {
-            drawing.add(shape, shell_id(house, index, part), |at, normal| light.on_shell(at, normal));
+            drawing.add(shape, shell_id(house, index, part), SHELL_M, |at, normal| light.on_shell(at, normal));
         }
     }
     for opening in &house.openings {
@@ -42,23 +48,27 @@ pub(super) fn draw(house: &House) -> Drawing {
         let line = opening.span.at as f32 / 100.0;
         let (cx, cy) = house.rooms[opening.room].outline.centre();
         let is_below = (if along_x { cy } else { cx }) as f32 / 100.0 < line;
-        drawing.add(structure::opening(house, opening), opening.id, |at, normal| {
+        drawing.add(structure::opening(house, opening), opening.id, THING_M, |at, normal| {
             let below = (if along_x { at.y } else { at.x }) < line;
-            lights[if below == is_below { opening.room } else { beyond }].on_thing(at, normal)
+            lights[if below == is_below { opening.room } else { beyond }].on_thing(at, normal, None)
         });
     }
+    let outlooks = outlooks(house);
     for window in &house.windows {
         let light = &lights[window.room];
-        drawing.add(structure::window(house, window), window.id, |at, normal| light.on_thing(at, normal));
+        drawing.add(structure::window(house, window, &outlooks), window.id, THING_M, |at, normal| {
+            light.on_thing(at, normal, None)
+        });
     }
     if let Some(stairs) = &house.stairs {
         let light = &lights[stairs.room];
-        drawing.add(structure::steps(stairs), stairs.id, |at, normal| light.on_thing(at, normal));
-        drawing.add(structure::railing(stairs), stairs.railing_id, |at, normal| light.on_thing(at, normal));
+        drawing.add(structure::steps(stairs), stairs.id, THING_M, |at, normal| light.on_thing(at, normal, None));
+        drawing
+            .add(structure::railing(stairs), stairs.railing_id, THING_M, |at, normal| light.on_thing(at, normal, None));
     }
     for piece in &house.furniture {
         let light = &lights[piece.room];
-        drawing.add(standing(piece), piece.id, |at, normal| light.on_thing(at, normal));
+        drawing.add(standing(piece), piece.id, THING_M, |at, normal| light.on_thing(at, normal, Some(piece.id)));
     }
     drawing.finish()
 }
@@ -85,24 +95,32 @@ fn standing(piece: &Furniture) -> Shape {
 struct Collector {
     meshes: Vec<Mesh>,
     materials: Vec<Material>,
+    /// The pattern of each texture that some material uses, in order of first use.
+    patterns: Vec<Pattern>,
     known: BTreeMap<(Pattern, [u8; 3]), usize>,
 }
 
 impl Collector {
-    fn add(&mut self, shape: Shape, id: u32, light: impl Fn(Vec3, Vec3) -> [f32; 3]) {
-        for part in shape.parts {
-            let Part { surface, positions, normals, uvs, triangles } = part;
+    fn add(&mut self, shape: Shape, id: u32, finest_m: f32, light: impl Fn(Vec3, Vec3) -> Factors) {
+        for mut part in shape.parts {
+            let glowing = part.surface.glows.then(|| vec![[1.0; 3]; part.positions.len()]);
+            let colours = glowing.unwrap_or_else(|| cut(&mut part, finest_m, &light));
+            let Part { surface, positions, uvs, triangles, .. } = part;
             let material = self.material(surface);
-            let shone = |(at, normal): (&Vec3, &Vec3)| if surface.glows { [1.0; 3] } else { light(*at, *normal) };
-            let colours = positions.iter().zip(&normals).map(shone).collect();
             self.meshes.push(Mesh { positions, uvs, colours, triangles, material, id });
         }
     }
 
     fn material(&mut self, Surface { pattern, rgb, .. }: Surface) -> usize {
-        let materials = &mut self.materials;
+        let (materials, patterns) = (&mut self.materials, &mut self.patterns);
         *self.known.entry((pattern, rgb)).or_insert_with(|| {
-            let texture = Pattern::ALL.iter().position(|each| *each == pattern).filter(|_| pattern != Pattern::Plain);
+            let texture = (pattern != Pattern::Plain).then(|| {
+                let seen = patterns.iter().position(|each| *each == pattern);
+                seen.unwrap_or_else(|| {
+                    patterns.push(pattern);
+                    patterns.len() - 1
+                })
+            });
             let [r, g, b] = rgb.map(|channel| f32::from(channel) / 255.0);
             materials.push(Material { base_colour: [r, g, b, 1.0], texture, double_sided: false });
             materials.len() - 1
@@ -110,6 +128,7 @@ impl Collector {
     }
 
     fn finish(self) -> Drawing {
-        Drawing { meshes: self.meshes, materials: self.materials, textures: textures::all() }
+        let textures = self.patterns.into_iter().map(textures::of).collect();
+        Drawing { meshes: self.meshes, materials: self.materials, textures }
     }
 }

@@ -14,6 +14,7 @@ mod light;
 pub mod model;
 mod names;
 mod objects;
+mod outlook;
 mod platform;
 mod rect;
 mod sample;

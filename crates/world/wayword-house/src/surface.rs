@@ -1,6 +1,6 @@
 //! The surface of things: a pattern and a colour.
 
-use super::colour::Colour;
+use super::{colour::Colour, outlook::Outlook};
 
 /// A picture that is laid on surfaces. It is light grey where the surface gives the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -18,8 +18,10 @@ pub(crate) enum Pattern {
     Leaves,
     Brick,
     Books,
-    Garden,
-    Treetops,
+    /// What lies outside, from the ground floor.
+    Outside(Outlook),
+    /// The same from upstairs.
+    FromAbove(Outlook),
     Reflection,
     Ornament,
     Wicker,
@@ -46,7 +48,7 @@ pub(crate) const ART_COUNT: u8 = 6;
 
 impl Pattern {
     /// All of them, in the order of their textures.
-    pub(crate) const ALL: [Self; 29] = [
+    pub(crate) const ALL: [Self; 41] = [
         Self::Plain,
         Self::Wood,
         Self::Planks,
@@ -60,8 +62,20 @@ impl Pattern {
         Self::Leaves,
         Self::Brick,
         Self::Books,
-        Self::Garden,
-        Self::Treetops,
+        Self::Outside(Outlook::Street),
+        Self::Outside(Outlook::Garden),
+        Self::Outside(Outlook::Yard),
+        Self::Outside(Outlook::Woods),
+        Self::Outside(Outlook::Hills),
+        Self::Outside(Outlook::Sea),
+        Self::Outside(Outlook::Meadow),
+        Self::FromAbove(Outlook::Street),
+        Self::FromAbove(Outlook::Garden),
+        Self::FromAbove(Outlook::Yard),
+        Self::FromAbove(Outlook::Woods),
+        Self::FromAbove(Outlook::Hills),
+        Self::FromAbove(Outlook::Sea),
+        Self::FromAbove(Outlook::Meadow),
         Self::Reflection,
         Self::Ornament,
         Self::Wicker,

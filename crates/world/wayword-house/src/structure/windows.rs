@@ -1,19 +1,27 @@
 //! Windows: a frame, a cross, and a picture of the view outside.
 
 use super::super::{
-    model::{HALF_WALL_CM, House, STOREY_CM, Window},
+    model::{HALF_WALL_CM, House, RoomKind, STOREY_CM, Window},
+    outlook::Outlook,
     rect::{SpanCm, Wall},
     shapes::Shape,
     surface::{Pattern, Surface},
 };
 use super::{metres, on_wall, wall_box};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-/// A window as it is seen from its room.
-pub(in super::super) fn window(house: &House, window: &Window) -> Shape {
+/// Width of the wall that one picture of the view fills, metres.
+const WIDE_M: f32 = 2.4;
+/// Height of the picture's upper edge above the floor, metres.
+const TOP_M: f32 = 2.4;
+/// Height of the picture, metres.
+const TALL_M: f32 = 2.1;
+
+/// A window as it is seen from its room; `outlooks` are those of the walls in their order.
+pub(in super::super) fn window(house: &House, window: &Window, outlooks: &[Outlook; 4]) -> Shape {
     let mut shape = Shape::default();
     let wall = house.rooms[window.room].outline.wall_of(&window.span).unwrap_or(Wall::North);
-    view(&mut shape, window, wall);
+    view(&mut shape, house, window, wall, outlooks[usize::from(wall.quarter_turns()) % 4]);
     let SpanCm { from, to, .. } = window.span;
     let (sill, head) = (window.sill_cm, window.head_cm);
     let white = Surface::plain([244, 243, 240]);
@@ -32,12 +40,21 @@ pub(in super::super) fn window(house: &House, window: &Window) -> Shape {
     shape
 }
 
-fn view(shape: &mut Shape, window: &Window, wall: Wall) {
+/// The view on the pane. It is laid out over the whole wall, with the horizon at eye level, so that windows side by side
+/// show parts of one view.
+fn view(shape: &mut Shape, house: &House, window: &Window, wall: Wall, outlook: Outlook) {
     let SpanCm { from, to, .. } = window.span;
-    let upstairs = window.sill_cm >= STOREY_CM;
-    let outside = Surface::picture(if upstairs { Pattern::Treetops } else { Pattern::Garden }).glowing();
-    let (left, right) = if matches!(wall, Wall::North | Wall::West) { (from, to) } else { (to, from) };
-    let corner = on_wall(&window.span, wall, left, 0, window.sill_cm);
-    let u = on_wall(&window.span, wall, right, 0, window.sill_cm) - corner;
-    shape.picture(outside, corner, u, Vec3::Z * metres(window.head_cm - window.sill_cm));
+    let (sill, head) = (window.sill_cm, window.head_cm);
+    let is_well = house.rooms[window.room].kind == RoomKind::Staircase;
+    // Above the landing, the eye is higher than on the room's own floor.
+    let floor_cm = if is_well { sill - 90 } else { house.rooms[window.room].base_cm() };
+    let upstairs = floor_cm >= STOREY_CM / 2;
+    let pattern = if upstairs { Pattern::FromAbove(outlook) } else { Pattern::Outside(outlook) };
+    let is_westward = matches!(wall, Wall::North | Wall::West);
+    let (left, right, across) = if is_westward { (from, to, from) } else { (to, from, -to) };
+    let corner = on_wall(&window.span, wall, left, 0, sill);
+    let u = on_wall(&window.span, wall, right, 0, sill) - corner;
+    let uv = |along: i32, z: i32| Vec2::new(metres(along) / WIDE_M, (TOP_M - metres(z - floor_cm)) / TALL_M);
+    let (uv0, uv1) = (uv(across, head), uv(across + to - from, sill));
+    shape.quad(Surface::picture(pattern).glowing(), corner, u, Vec3::Z * metres(head - sill), uv0, uv1);
 }

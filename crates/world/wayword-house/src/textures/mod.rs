@@ -3,12 +3,13 @@
 //! Patterns whose colour comes from their surface are light grey, because a texture can only darken what it multiplies.
 
 mod noise;
+mod outside;
 mod paintings;
 mod patterns;
 mod scenes;
 
 use super::surface::Pattern;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 use wayword_render::Texture;
 
 /// Side of a texture, texels.
@@ -17,10 +18,11 @@ pub(super) const SIDE: u32 = 256;
 /// Gamma-encoded colour, 0..=255 per channel.
 pub(super) type Rgb = [f32; 3];
 
-/// All textures, in the order of [`Pattern::ALL`]; painted once, since every house has the same.
-pub(super) fn all() -> Vec<Texture> {
-    static PAINTED: LazyLock<Vec<Texture>> = LazyLock::new(|| Pattern::ALL.map(paint).into());
-    PAINTED.clone()
+/// The texture of a pattern; painted once, since it is the same in every house.
+pub(super) fn of(pattern: Pattern) -> Texture {
+    static PAINTED: [OnceLock<Texture>; Pattern::ALL.len()] = [const { OnceLock::new() }; Pattern::ALL.len()];
+    let painted = Pattern::ALL.iter().position(|each| *each == pattern).and_then(|at| PAINTED.get(at));
+    painted.map_or_else(|| paint(pattern), |cell| cell.get_or_init(|| paint(pattern)).clone())
 }
 
 fn paint(pattern: Pattern) -> Texture {
@@ -52,8 +54,8 @@ fn colour(pattern: Pattern, u: f32, v: f32) -> Rgb {
         Pattern::Wicker => patterns::wicker(u, v),
         Pattern::Coils => patterns::coils(u, v),
         Pattern::Books => scenes::books(u, v),
-        Pattern::Garden => scenes::garden(u, v),
-        Pattern::Treetops => scenes::treetops(u, v),
+        Pattern::Outside(outlook) => outside::outside(outlook, false, u, v),
+        Pattern::FromAbove(outlook) => outside::outside(outlook, true, u, v),
         Pattern::Reflection => scenes::reflection(u, v),
         Pattern::Fire => scenes::fire(u, v),
         Pattern::Desktop => scenes::desktop(u, v),
@@ -69,9 +71,10 @@ mod tests {
 
     #[test]
     fn every_pattern_but_the_plain_one_has_something_to_see() {
-        for (pattern, texture) in Pattern::ALL.iter().zip(all()) {
+        for pattern in Pattern::ALL {
+            let texture = of(pattern);
             let differs = texture.texels.iter().any(|texel| *texel != texture.texels[0]);
-            assert_eq!(differs, *pattern != Pattern::Plain, "{pattern:?}");
+            assert_eq!(differs, pattern != Pattern::Plain, "{pattern:?}");
         }
     }
 
@@ -82,6 +85,20 @@ mod tests {
             let mean = texture.texels.iter().map(|texel| u64::from(texel[1])).sum::<u64>() / u64::from(SIDE * SIDE);
             assert!(mean > 200, "{pattern:?}: {mean}");
             assert!(texture.texels.iter().all(|[r, g, b, _]| r.abs_diff(*g) < 4 && g.abs_diff(*b) < 4));
+        }
+    }
+
+    #[test]
+    fn views_from_windows_differ_and_repeat_sideways() {
+        let views = Pattern::ALL.into_iter().filter(|p| matches!(p, Pattern::Outside(_) | Pattern::FromAbove(_)));
+        let textures: Vec<_> = views.map(of).collect();
+        for (at, texture) in textures.iter().enumerate() {
+            assert!(textures[..at].iter().all(|other| other.texels != texture.texels));
+            let row = |y: u32| &texture.texels[(y * SIDE) as usize..((y + 1) * SIDE) as usize];
+            let apart = |a: [u8; 4], b: [u8; 4]| (0..3).map(|c| u64::from(a[c].abs_diff(b[c]))).sum::<u64>();
+            let seam: u64 = (0..SIDE).map(|y| apart(row(y)[0], row(y)[SIDE as usize - 1])).sum();
+            let inside: u64 = (0..SIDE).map(|y| apart(row(y)[SIDE as usize / 2], row(y)[SIDE as usize / 2 + 9])).sum();
+            assert!(seam < 2 * inside + 6000, "view {at} has a seam: {seam}, {inside} within");
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Pictures that show something: books, views from windows, screens.
+//! Pictures that show something: books, glass, fire, screens.
 
 use super::{
     Rgb,
-    noise::{away, cloudy, hash, mix, smooth},
+    noise::{cloudy, hash, mix, smooth},
 };
 
 const SPINES: [Rgb; 9] = [
@@ -34,42 +34,6 @@ pub(super) fn books(u: f32, v: f32) -> Rgb {
         return mix(spine, [240.0, 220.0, 160.0], 0.7);
     }
     mix(spine, [255.0; 3], 0.12 - (across - 0.5).abs() * 0.3)
-}
-
-fn sky(u: f32, v: f32) -> Rgb {
-    let cloud = ((cloudy(u, v, 3, 32) - 0.5) * 4.0).clamp(0.0, 1.0);
-    mix(mix([120.0, 176.0, 232.0], [206.0, 228.0, 246.0], v * 1.5), [255.0; 3], cloud)
-}
-
-fn tree(u: f32, v: f32, at: (f32, f32), radius: f32) -> Option<Rgb> {
-    let ragged = radius * (0.78 + 0.44 * smooth(u, v, (28, 28), 33));
-    if away(u, v, at) < ragged {
-        return Some(mix([44.0, 92.0, 44.0], [116.0, 160.0, 74.0], smooth(u, v, (20, 20), 34) - (v - at.1)));
-    }
-    ((u - at.0).abs() < radius * 0.09 && v > at.1).then_some([92.0, 68.0, 48.0])
-}
-
-/// A lawn with trees and a hedge under the sky.
-pub(super) fn garden(u: f32, v: f32) -> Rgb {
-    let grass = mix([136.0, 178.0, 84.0], [84.0, 136.0, 60.0], (v - 0.66) * 3.0 + smooth(u, v, (48, 32), 35) * 0.3);
-    if v > 0.66 {
-        return grass;
-    }
-    [(0.22, 0.42, 0.2), (0.72, 0.38, 0.24), (0.48, 0.5, 0.1)]
-        .into_iter()
-        .find_map(|(x, y, r)| tree(u, v, (x, y), r))
-        .unwrap_or_else(|| {
-            let hedge = v > 0.58 + smooth(u, 0.0, (24, 1), 36) * 0.03;
-            if hedge { mix([60.0, 104.0, 54.0], [86.0, 132.0, 66.0], smooth(u, v, (32, 32), 37)) } else { sky(u, v) }
-        })
-}
-
-/// The view from upstairs: treetops under the sky.
-pub(super) fn treetops(u: f32, v: f32) -> Rgb {
-    [(0.16, 0.86, 0.22), (0.52, 0.98, 0.26), (0.86, 0.84, 0.2)]
-        .into_iter()
-        .find_map(|(x, y, r)| tree(u, v, (x, y), r))
-        .unwrap_or_else(|| sky(u, v))
 }
 
 /// The sheen of glass: pale bluish, with two slanting streaks.

@@ -1,0 +1,111 @@
+//! What casts shadow: each piece of furniture as a few boxes.
+
+use super::{
+    super::{
+        catalogue::FurnitureKind,
+        model::Furniture,
+        rect::{RectCm, Wall},
+    },
+    metres,
+};
+use glam::Vec3;
+
+/// A box that light does not pass, metres.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block {
+    /// Number of the piece that it belongs to; 0 for none.
+    pub(super) owner: u32,
+    pub(super) low: Vec3,
+    pub(super) high: Vec3,
+}
+
+/// Thickness of table tops and seats as they cast shadow, centimetres: more than they have, so that lamps' soft shadows
+/// are dark.
+const TOP_CM: i32 = 10;
+
+/// The boxes of a piece; none where it is flat, hangs on a wall, is of glass, or is itself a lamp at the ceiling.
+pub(super) fn blocks(piece: &Furniture) -> Vec<Block> {
+    use FurnitureKind as K;
+    let (area, height) = (piece.footprint, piece.height_cm);
+    let boxed = |area: RectCm, low: i32, high: i32| Block {
+        owner: piece.id,
+        low: Vec3::new(metres(area.x0), metres(area.y0), metres(piece.base_cm + low)),
+        high: Vec3::new(metres(area.x1), metres(area.y1), metres(piece.base_cm + high)),
+    };
+    let back = |part: i32| back_of(&area, piece.quarter_turns, part);
+    let legs = |high: i32| feet(&area).map(|foot| boxed(foot, 0, high));
+    let middle = |percent: i32| {
+        let (dx, dy) = (area.width() * (100 - percent) / 200, area.depth() * (100 - percent) / 200);
+        RectCm::new(area.x0 + dx, area.y0 + dy, area.x1 - dx, area.y1 - dy)
+    };
+    match piece.kind {
+        K::CeilingLight | K::Chandelier | K::Shower => Vec::new(),
+        kind if kind.is_flat() || kind.is_slim_on_wall() => Vec::new(),
+        K::CoffeeTable
+        | K::DiningTable
+        | K::SideTable
+        | K::ConsoleTable
+        | K::Desk
+        | K::Workbench
+        | K::IroningBoard
+        | K::BarStool
+        | K::Bench => {
+            let mut all = vec![boxed(area, height - TOP_CM, height)];
+            all.extend(legs(height - TOP_CM));
+            all
+        }
+        K::Chair | K::OfficeChair => {
+            let seat = height / 2;
+            let mut all = vec![boxed(area, seat - TOP_CM, seat), boxed(back(15), seat, height)];
+            all.extend(legs(seat - TOP_CM));
+            all
+        }
+        K::Sofa | K::Armchair | K::Toilet => vec![boxed(area, 0, height * 55 / 100), boxed(back(28), 0, height)],
+        K::Bed => vec![boxed(area, 0, height * 55 / 100), boxed(back(5), 0, height)],
+        K::Car => vec![boxed(area, 20, height * 60 / 100), boxed(middle(70), 20, height)],
+        K::FloorLamp | K::TableLamp | K::CoatRack | K::Bicycle | K::ClothesRack => {
+            vec![boxed(middle(30), 0, height)]
+        }
+        K::Plant | K::Vase | K::Globe => vec![boxed(middle(60), 0, height)],
+        _ => vec![boxed(area, 0, height)],
+    }
+}
+
+/// The strip at the back of a footprint, `percent` of its depth.
+fn back_of(area: &RectCm, quarter_turns: u8, percent: i32) -> RectCm {
+    let wall = Wall::ALL[usize::from(quarter_turns) % 4];
+    let deep = (if wall.along_x() { area.depth() } else { area.width() }) * percent / 100;
+    match wall {
+        Wall::North => RectCm::new(area.x0, area.y1 - deep, area.x1, area.y1),
+        Wall::South => RectCm::new(area.x0, area.y0, area.x1, area.y0 + deep),
+        Wall::West => RectCm::new(area.x0, area.y0, area.x0 + deep, area.y1),
+        Wall::East => RectCm::new(area.x1 - deep, area.y0, area.x1, area.y1),
+    }
+}
+
+/// Four legs of 6 cm at a footprint's corners.
+fn feet(area: &RectCm) -> [RectCm; 4] {
+    let leg = |x: i32, y: i32| RectCm::new(x, y, x + 6, y + 6);
+    [(area.x0, area.y0), (area.x1 - 6, area.y0), (area.x0, area.y1 - 6), (area.x1 - 6, area.y1 - 6)]
+        .map(|(x, y)| leg(x, y))
+}
+
+/// How much of the light on a straight way is held back, 0..=1. `soft` is the length within a box that holds back all of
+/// it, metres: it makes the edge of the shadow soft. Boxes of the piece `own` do not count.
+pub(super) fn blocked(blocks: &[Block], own: Option<u32>, from: Vec3, way: Vec3, soft: f32) -> f32 {
+    let length = way.length();
+    let per_step = way.recip();
+    let mut passes = 1.0;
+    for block in blocks.iter().filter(|block| own != Some(block.owner)) {
+        let (a, b) = ((block.low - from) * per_step, (block.high - from) * per_step);
+        let enters = a.min(b).max_element().max(0.0);
+        let leaves = a.max(b).min_element().min(1.0);
+        if enters < leaves {
+            passes *= 1.0 - ((leaves - enters) * length / soft).min(1.0);
+            if passes <= 0.0 {
+                return 1.0;
+            }
+        }
+    }
+    1.0 - passes
+}

@@ -1,0 +1,103 @@
+//! Cuts surfaces where the light on them changes, because light is stored at corners only.
+//!
+//! Whether an edge is cut depends on its two ends alone. So two triangles with a common edge agree, and no crack opens
+//! between them.
+
+use super::super::shapes::Part;
+use glam::Vec3;
+use std::collections::BTreeMap;
+
+/// Light at a place with a normal, as factors.
+pub(in super::super) type Factors = [f32; 3];
+
+/// The light may differ by this much from what the ends of an edge tell.
+const TOLERANCE: f32 = 0.04;
+/// Edges longer than this are tried at three places instead of one, metres.
+const LONG_M: f32 = 0.45;
+/// How often a triangle is cut at most; this only bounds the work.
+const DEEPEST: u32 = 12;
+
+/// Cuts the triangles of a part down to about `finest_m`, and gives the light of each corner.
+pub(in super::super) fn cut(part: &mut Part, finest_m: f32, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
+    let colours = part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect();
+    let mut cutter = Cutter { part, colours, finest_m, light, middles: BTreeMap::new() };
+    let mut waiting: Vec<_> = std::mem::take(&mut cutter.part.triangles).into_iter().map(|each| (each, 0)).collect();
+    waiting.reverse();
+    while let Some((triangle, depth)) = waiting.pop() {
+        let pieces = if depth < DEEPEST { cutter.pieces(triangle) } else { vec![triangle] };
+        match pieces.as_slice() {
+            [whole] => cutter.part.triangles.push(*whole),
+            several => waiting.extend(several.iter().map(|piece| (*piece, depth + 1))),
+        }
+    }
+    cutter.colours
+}
+
+struct Cutter<'a, L> {
+    part: &'a mut Part,
+    colours: Vec<Factors>,
+    finest_m: f32,
+    light: L,
+    /// The new corner in the middle of an edge; `None` where the edge stays whole.
+    middles: BTreeMap<(u32, u32), Option<u32>>,
+}
+
+impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
+    fn pieces(&mut self, [a, b, c]: [u32; 3]) -> Vec<[u32; 3]> {
+        match [self.middle(a, b), self.middle(b, c), self.middle(c, a)] {
+            [None, None, None] => vec![[a, b, c]],
+            [Some(ab), Some(bc), Some(ca)] => vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]],
+            [Some(ab), None, None] => vec![[a, ab, c], [ab, b, c]],
+            [None, Some(bc), None] => vec![[b, bc, a], [bc, c, a]],
+            [None, None, Some(ca)] => vec![[c, ca, b], [ca, a, b]],
+            [Some(ab), Some(bc), None] => vec![[ab, b, bc], [a, ab, bc], [a, bc, c]],
+            [None, Some(bc), Some(ca)] => vec![[bc, c, ca], [b, bc, ca], [b, ca, a]],
+            [Some(ab), None, Some(ca)] => vec![[ca, a, ab], [c, ca, ab], [c, ab, b]],
+        }
+    }
+
+    fn middle(&mut self, a: u32, b: u32) -> Option<u32> {
+        let edge = (a.min(b), a.max(b));
+        if let Some(known) = self.middles.get(&edge) {
+            return *known;
+        }
+        let made = self.cut_edge(a as usize, b as usize);
+        self.middles.insert(edge, made);
+        made
+    }
+
+    /// The two ends may lie in either order, so everything here is the same both ways.
+    fn cut_edge(&mut self, a: usize, b: usize) -> Option<u32> {
+        let length = (self.part.positions[a] - self.part.positions[b]).length();
+        if length < 1.5 * self.finest_m {
+            return None;
+        }
+        let (at, normal, colour) = self.between(a, b, 0.5);
+        let mut uneven = self.strays(a, b, 0.5, colour);
+        if !uneven && length > LONG_M {
+            uneven = [0.25, 0.75].into_iter().any(|share| {
+                let (_, _, colour) = self.between(a, b, share);
+                self.strays(a, b, share, colour)
+            });
+        }
+        uneven.then(|| {
+            let uv = (self.part.uvs[a] + self.part.uvs[b]) * 0.5;
+            self.part.positions.push(at);
+            self.part.normals.push(normal);
+            self.part.uvs.push(uv);
+            self.colours.push(colour);
+            self.colours.len() as u32 - 1
+        })
+    }
+
+    fn between(&self, a: usize, b: usize, share: f32) -> (Vec3, Vec3, Factors) {
+        let at = self.part.positions[a] * (1.0 - share) + self.part.positions[b] * share;
+        let normal = (self.part.normals[a] * (1.0 - share) + self.part.normals[b] * share).normalize_or_zero();
+        (at, normal, (self.light)(at, normal))
+    }
+
+    fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> bool {
+        let told = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
+        (0..3).any(|channel| (colour[channel] - told(channel)).abs() > TOLERANCE)
+    }
+}
