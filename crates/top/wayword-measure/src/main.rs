@@ -14,6 +14,7 @@ mod eye;
 mod fit_evidence;
 mod fit_follower;
 mod found;
+mod house_views;
 mod judged;
 mod key;
 #[cfg(test)]
@@ -215,6 +216,8 @@ enum What {
     TellApart(tell_apart::Flags),
     /// Hold texts about generated houses against their plans: the room at the end, what stands there, the target.
     Houses(texts::houses::Flags),
+    /// Count the views on walks through generated houses of which half or more is bare wall, and measure the time that a view takes.
+    HouseViews(house_views::Flags),
     /// Simulate studies with people, and count how often the intervals of their figures cover the truth.
     StudyCoverage(study_coverage::Flags),
     /// Measure generated texts: bare turns, lengths, word types, openers, and what they share with other texts.
@@ -230,6 +233,7 @@ fn main() -> ExitCode {
         What::TellApart(flags) => flags.json,
         What::Texts(flags) => flags.json,
         What::Houses(flags) => flags.json,
+        What::HouseViews(flags) => flags.json,
         What::StudyCoverage(flags) => flags.json,
         _ => false,
     };
@@ -275,6 +279,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::TellApart(flags) => tell_apart::measure(&flags, output),
         What::Houses(flags) => texts::houses::measure(&flags, output),
+        What::HouseViews(flags) => house_views::measure(&flags, output),
         What::Texts(flags) => texts::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }
