@@ -3,12 +3,15 @@
 mod bathroom;
 mod bedroom;
 mod dining;
+mod dress;
+mod finish;
 mod kitchen;
 mod living;
 mod office;
 mod placing;
 mod reach;
 mod service;
+mod stairwell;
 mod walls;
 
 use super::{
@@ -32,14 +35,18 @@ pub(super) struct Taste {
 pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
     let mut dice = Dice::new(seed, &["taste"]);
     let taste = Taste {
-        wood: dice.pick([Colour::Brown, Colour::LightBrown, Colour::DarkBrown, Colour::White]),
-        kitchen: dice.pick([Colour::White, Colour::Grey, Colour::Blue, Colour::Green, Colour::LightBrown]),
+        wood: finish::of_house(&mut dice),
+        kitchen: finish::of_kitchen(&mut dice),
         curtain: dice.pick([Colour::Beige, Colour::Grey, Colour::Blue, Colour::White]),
     };
     let mut pieces = Vec::new();
     for index in 0..layout.rooms.len() {
         let mut room = Furnisher::new(seed, layout, index, taste);
         furnish_room(&mut room, layout.rooms[index].kind);
+        match layout.stairs.as_ref().filter(|stairs| stairs.room == index) {
+            Some(stairs) => stairwell::furnish(&mut room, stairs),
+            None => room.dress_walls(),
+        }
         pieces.extend(room.into_pieces());
     }
     for (id, piece) in (layout.next_id..).zip(&mut pieces) {
