@@ -1,77 +1,140 @@
-//! What is seen along walks through generated houses: how often half of a view is bare wall, and how long a view takes.
+//! How much of what walks through generated houses look at is bare wall, and what a view costs.
 
-use std::{collections::BTreeMap, time::Instant};
+use crate::{resources, share::Share};
+use clap::Args;
+use serde::Serialize;
+use std::{collections::BTreeMap, fmt, time::Duration};
 use wayword::{error::Error, output::Output};
-use wayword_core::{Gaze, PathRequest, Platform, PlatformError, seed::derive};
-use wayword_house::{EYE_M, HousePlatform, HouseScene, Role, generate};
+use wayword_core::{Gaze, PathRequest, Platform, Pose, seed::derive};
+use wayword_house::{HousePlatform, HouseScene, Role, generate};
 use wayword_render::Camera;
 
-/// A view of which at least this share is bare wall is half bare wall.
+/// From this share of a picture on, it counts as a picture of bare wall.
 const HALF: f64 = 0.5;
+/// Width and height of the pictures, pixels.
 const SIZE_PX: [u32; 2] = [640, 480];
 
-#[derive(Debug, clap::Args)]
+/// The flags of `house-views`.
+#[derive(Debug, Args)]
 pub(crate) struct Flags {
-    /// Seed of the first house.
-    #[arg(long, default_value_t = 1000)]
-    seed: u64,
-    /// Houses.
+    /// How many houses.
     #[arg(long, default_value_t = 20)]
     houses: u64,
-    /// Walks through each.
+    /// Seed of the first house.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Walks through each house.
     #[arg(long, default_value_t = 10)]
     walks: u64,
+    /// Seed of the walks.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// What is printed.
+#[derive(Debug, Serialize)]
+struct Told {
+    /// Views of which at least half is bare wall, by walk.
+    half_wall: Option<Share>,
+    /// The same, by the room that the walker is in: how many, and of how many.
+    rooms: BTreeMap<&'static str, [usize; 2]>,
+    /// Processor time of a view, milliseconds.
+    cpu_ms: f64,
+}
+
+/// A view on a walk.
+struct Seen {
+    walk: (u64, u64),
+    room: &'static str,
+    is_bare: bool,
 }
 
 pub(crate) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
-    let platform = HousePlatform::default();
-    let (mut rooms, mut times_ms): (BTreeMap<&str, [usize; 2]>, _) = (BTreeMap::new(), Vec::new());
-    for seed in flags.seed..flags.seed + flags.houses {
-        let scene = HousePlatform::scene_of(seed)?;
-        let drawn = HouseScene::new(generate(seed))
-            .map_err(|error| PlatformError::NotDrawn { scene: scene.clone(), reason: error.to_string() })?;
-        for walk in 0..flags.walks {
-            let path =
-                platform.sample_path(&scene, &PathRequest::default(), derive(seed, &["views", &walk.to_string()]))?;
-            for frame in &path.frames {
-                let camera = Camera::level(frame.pose.position, Gaze::quarter(frame.pose.heading), SIZE_PX);
-                let begun = Instant::now();
-                let picture =
-                    drawn.picture(&camera).map_err(|error| Error::usage(error.to_string(), "another seed"))?;
-                times_ms.push(begun.elapsed().as_secs_f64() * 1e3);
-                let is_wall = |id: &&u32| {
-                    drawn.objects.get(*id).is_some_and(|object| object.role == Role::Shell && object.name == "wall")
-                };
-                let wall = picture.ids.iter().filter(is_wall).count();
-                let eye = frame.pose.position;
-                let room = drawn.house.room_at(eye.x, eye.y, eye.z - EYE_M).map_or("?", |room| room.kind.word());
-                let counts = rooms.entry(room).or_default();
-                counts[0] += 1;
-                counts[1] += usize::from(wall as f64 >= HALF * picture.ids.len() as f64);
-            }
+    let (mut seen, mut spent) = (Vec::new(), Duration::ZERO);
+    for house in flags.first..flags.first.saturating_add(flags.houses) {
+        let home = HouseScene::new(generate(house)).map_err(|error| refused(house, &error))?;
+        for (walk, pose) in poses(flags, house)? {
+            let before = resources::cpu();
+            let camera = Camera::level(pose.position, Gaze::quarter(pose.heading), SIZE_PX);
+            let picture = home.picture(&camera).map_err(|error| refused(house, &error))?;
+            spent += resources::cpu().saturating_sub(before);
+            let eye = pose.position;
+            let room = home.house.room_at(eye.x, eye.y, eye.z).map_or("nowhere", |room| room.kind.word());
+            seen.push(Seen { walk: (house, walk), room, is_bare: bare_share(&home, &picture.ids) >= HALF });
         }
     }
-    times_ms.sort_by(f64::total_cmp);
-    let at = |share: f64| times_ms.get((share * times_ms.len() as f64) as usize).copied().unwrap_or_default();
-    let [views, bare] = rooms.values().fold([0, 0], |sum, counts| [sum[0] + counts[0], sum[1] + counts[1]]);
-    let share = |[views, bare]: [usize; 2]| bare as f64 / views.max(1) as f64;
-    let told = serde_json::json!({
-        "views": views,
-        "half_bare_wall": share([views, bare]),
-        "by_room": rooms.iter().map(|(room, counts)| (*room, share(*counts))).collect::<BTreeMap<_, _>>(),
-        "median_ms": at(0.5),
-        "most_ms": at(0.99),
-    });
-    let by_room: Vec<String> =
-        rooms.iter().map(|(room, counts)| format!("{room} {:.0} % of {}", 100.0 * share(*counts), counts[0])).collect();
-    let text = format!(
-        "{views} views along walks through {} houses: {:.1} % are half bare wall ({}); a view of 640x480 takes {:.1} ms, 99 % at most {:.1} ms",
-        flags.houses,
-        100.0 * share([views, bare]),
-        by_room.join(", "),
-        at(0.5),
-        at(0.99)
-    );
-    output.data(&told, text);
+    let told = told(&seen, flags.seed, spent);
+    output.data(&told, &told);
     Ok(())
+}
+
+fn refused(house: u64, error: &dyn std::error::Error) -> Error {
+    Error::usage(format!("house {house} cannot be drawn: {error}"), "choose other houses with --first")
+}
+
+/// Each frame of the walks through a house, with the number of its walk.
+fn poses(flags: &Flags, house: u64) -> Result<Vec<(u64, Pose)>, Error> {
+    let (platform, scene) = (HousePlatform::default(), HousePlatform::scene_of(house)?);
+    let mut poses = Vec::new();
+    for walk in 0..flags.walks {
+        let seed = derive(flags.seed, &["house views", &house.to_string(), &walk.to_string()]);
+        let path = platform.sample_path(&scene, &PathRequest::default(), seed)?;
+        poses.extend(path.frames.iter().map(|frame| (walk, frame.pose)));
+    }
+    Ok(poses)
+}
+
+/// The share of a picture's pixels that show a wall itself: what hangs on it, and its doors and windows, have numbers of their own.
+fn bare_share(home: &HouseScene, ids: &[u32]) -> f64 {
+    let is_wall = |id: &&u32| home.objects.get(id).is_some_and(|it| it.role == Role::Shell && it.name == "wall");
+    ids.iter().filter(is_wall).count() as f64 / ids.len().max(1) as f64
+}
+
+fn told(seen: &[Seen], seed: u64, spent: Duration) -> Told {
+    let mut rooms: BTreeMap<&'static str, [usize; 2]> = BTreeMap::new();
+    for view in seen {
+        let [bare, all] = rooms.entry(view.room).or_default();
+        (*bare, *all) = (*bare + usize::from(view.is_bare), *all + 1);
+    }
+    Told {
+        half_wall: Share::of(seen.iter().map(|view| (view.walk, view.is_bare)), seed),
+        rooms,
+        cpu_ms: 1000.0 * spent.as_secs_f64() / seen.len().max(1) as f64,
+    }
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = self.half_wall.as_ref().map_or("-".to_owned(), ToString::to_string);
+        write!(f, "views of which half or more is bare wall: {share}")?;
+        for (room, [bare, all]) in &self.rooms {
+            write!(f, "\n  in the {room}: {bare} of {all}")?;
+        }
+        write!(f, "\nprocessor time per view: {:.1} ms", self.cpu_ms)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walls_count_and_what_hangs_on_them_does_not() {
+        let home = HouseScene::new(generate(3)).unwrap();
+        let number = |named: &str| *home.objects.iter().find(|(_, object)| object.name == named).unwrap().0;
+        let (wall, painting, floor) = (number("wall"), number("painting"), number("floor"));
+        assert!((bare_share(&home, &[wall, wall, painting, floor]) - 0.5).abs() < 1e-9);
+        assert_eq!(bare_share(&home, &[painting, floor, number("window"), 0]), 0.0);
+    }
+
+    #[test]
+    fn views_are_counted_by_room() {
+        let view = |room, is_bare| Seen { walk: (0, 0), room, is_bare };
+        let told = told(&[view("hallway", true), view("hallway", false), view("kitchen", false)], 0, Duration::ZERO);
+        assert_eq!(told.rooms, BTreeMap::from([("hallway", [1, 2]), ("kitchen", [0, 1])]));
+        assert_eq!(told.half_wall.map(|share| (share.count, share.of)), Some((1, 3)));
+    }
 }

@@ -191,8 +191,6 @@ enum What {
         #[arg(long, default_value_t = 200)]
         paths: usize,
     },
-    /// Count the views along walks through generated houses of which half is bare wall, and measure how long a view takes.
-    HouseViews(house_views::Flags),
     /// Take the walks of an export of steps again: whether their actions lead to their ends, and whether their pictures are those
     /// of their poses.
     Steps(steps::Flags),
@@ -218,6 +216,8 @@ enum What {
     TellApart(tell_apart::Flags),
     /// Hold texts about generated houses against their plans: the room at the end, what stands there, the target.
     Houses(texts::houses::Flags),
+    /// Count the views on walks through generated houses of which half or more is bare wall, and measure the time that a view takes.
+    HouseViews(house_views::Flags),
     /// Simulate studies with people, and count how often the intervals of their figures cover the truth.
     StudyCoverage(study_coverage::Flags),
     /// Measure generated texts: bare turns, lengths, word types, openers, and what they share with other texts.
@@ -233,6 +233,7 @@ fn main() -> ExitCode {
         What::TellApart(flags) => flags.json,
         What::Texts(flags) => flags.json,
         What::Houses(flags) => flags.json,
+        What::HouseViews(flags) => flags.json,
         What::StudyCoverage(flags) => flags.json,
         _ => false,
     };
@@ -269,7 +270,6 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Parity(flags) => parity::measure(&flags, output),
         What::Reuse { world, paths } => reuse::measure(&world, paths, output),
         What::FitEvidence { data, episodes, out } => fit_evidence::measure(&data, &episodes, out.as_deref(), output),
-        What::HouseViews(flags) => house_views::measure(&flags, output),
         What::Steps(flags) => steps::measure(&flags, output),
         What::People(flags) => people::measure(flags, output),
         What::CorruptPeople(flags) => corrupt_people::write(&flags, output),
@@ -279,6 +279,7 @@ fn run(what: What, output: &Output) -> Result<(), Error> {
         What::Sweep(flags) => sweep::measure(&flags, output),
         What::TellApart(flags) => tell_apart::measure(&flags, output),
         What::Houses(flags) => texts::houses::measure(&flags, output),
+        What::HouseViews(flags) => house_views::measure(&flags, output),
         What::Texts(flags) => texts::measure(&flags, output),
         What::Sample { run, count, seed } => sample::show(&run, count, seed, output),
     }

@@ -48,32 +48,38 @@ macro_rules! catalogue {
 }
 
 catalogue! {
-    Sofa "sofa" [210 90 82] +- 20 "fabric" [Grey Beige Blue Green DarkGrey Teal Red];
-    Armchair "armchair" [82 82 84] +- 4 "fabric" [Beige Yellow Blue Green Orange Red Grey];
-    CoffeeTable "coffee table" [110 60 42] +- 10 "wood" [Brown LightBrown White DarkBrown];
-    TvStand "tv stand" [160 42 50] +- 15 "wood" [White Brown DarkBrown LightBrown];
+    Sofa "sofa" [210 90 82] +- 20 "fabric" [Grey Beige Blue Green DarkGrey Teal Red Brown Pink Yellow];
+    Armchair "armchair" [82 82 84] +- 4 "fabric" [Beige Yellow Blue Green Orange Red Grey Brown Pink Purple];
+    CoffeeTable "coffee table" [110 60 42] +- 10 "wood" [Wooden Brown White Black Glass];
+    TvStand "tv stand" [160 42 50] +- 15 "wood" [White Brown Black Wooden Grey];
     Television "television" [124 8 74] +- 8 "plastic" [Black];
-    Bookshelf "bookshelf" [95 32 200] +- 15 "wood" [Brown White LightBrown DarkBrown];
+    Bookshelf "bookshelf" [95 32 200] +- 15 "wood" [Brown White Wooden Black Blue];
     FloorLamp "floor lamp" [42 42 162] +- 2 "metal" [Black Silver Gold White];
     Rug "rug" [230 160 1] +- 20 "wool" [Red Blue Beige Grey Teal];
     Plant "plant" [52 52 130] +- 8 "plant" [Green];
     Painting "painting" [90 4 66] +- 20 "canvas" [Blue Orange Green Red Yellow Purple];
-    SideTable "side table" [48 48 54] +- 2 "wood" [Brown LightBrown White];
+    SideTable "side table" [48 48 54] +- 2 "wood" [Wooden White Black Glass Blue];
     TableLamp "lamp" [30 30 50] +- 2 "ceramic" [White Blue Green Gold Black];
     Fireplace "fireplace" [140 34 112] +- 10 "stone" [White Grey Red];
     Curtain "curtain" [60 8 220] +- 0 "fabric" [Beige Grey Blue Green Red White];
     Vase "vase" [22 22 44] +- 2 "ceramic" [White Blue Teal Red];
-    Piano "piano" [148 60 122] +- 2 "wood" [Black DarkBrown];
+    Piano "piano" [148 60 122] +- 2 "wood" [Black Brown White];
+    Photos "photos" [120 3 150] +- 20 "paper" [Black];
+    Tapestry "tapestry" [100 4 160] +- 20 "wool" [Red Blue Green Orange Purple Teal Beige];
+    CoatHooks "coat rack" [100 12 150] +- 10 "wood" [White Brown Wooden Black];
+    BulletinBoard "bulletin board" [110 3 90] +- 10 "cork" [Wooden];
+    ToolBoard "tool rack" [120 6 110] +- 20 "wood" [Wooden];
+    GrandfatherClock "grandfather clock" [48 28 202] +- 0 "wood" [Brown Wooden];
     Clock "clock" [36 4 36] +- 2 "plastic" [White Black];
     CeilingLight "ceiling light" [44 44 16] +- 4 "glass" [White];
-    Counter "kitchen counter" [60 62 91] +- 0 "wood" [White Grey Blue Green LightBrown];
+    Counter "kitchen counter" [60 62 91] +- 0 "wood" [White Grey Blue Green Wooden];
     KitchenSink "sink" [80 62 91] +- 0 "metal" [Silver];
     Stove "stove" [62 62 91] +- 0 "metal" [Silver Black White];
     Refrigerator "refrigerator" [76 70 182] +- 6 "metal" [Silver White];
-    WallCabinet "cabinet" [80 36 66] +- 0 "wood" [White Grey Blue Green LightBrown];
+    WallCabinet "cabinet" [80 36 66] +- 0 "wood" [White Grey Blue Green Wooden];
     RangeHood "range hood" [62 44 58] +- 0 "metal" [Silver];
-    Island "kitchen island" [150 80 92] +- 10 "wood" [White Grey Blue Green LightBrown];
-    BarStool "stool" [38 38 68] +- 0 "wood" [Black LightBrown White Red];
+    Island "kitchen island" [150 80 92] +- 10 "wood" [White Grey Blue Green Wooden];
+    BarStool "stool" [38 38 68] +- 0 "wood" [Black Wooden White Red Yellow];
     Microwave "microwave" [48 34 28] +- 0 "metal" [Black Silver White];
     Toaster "toaster" [30 18 20] +- 0 "metal" [Silver Red];
     Kettle "kettle" [22 18 26] +- 0 "metal" [Silver Red Black];
@@ -85,39 +91,38 @@ catalogue! {
     Shower "shower" [92 92 205] +- 4 "glass" [LightBlue];
     Towel "towel" [56 8 74] +- 0 "fabric" [Blue White Teal Red Yellow Pink];
     BathMat "bath mat" [80 50 2] +- 5 "fabric" [Blue Teal Grey Pink];
-    DiningTable "dining table" [170 92 75] +- 15 "wood" [Brown LightBrown DarkBrown White];
-    Chair "chair" [44 48 92] +- 0 "wood" [Brown LightBrown White Black DarkBrown];
+    DiningTable "dining table" [170 92 75] +- 15 "wood" [Brown Wooden White Black Glass];
+    Chair "chair" [44 48 92] +- 0 "wood" [Brown Wooden White Black Red Blue Green];
     Chandelier "chandelier" [66 66 62] +- 4 "metal" [Gold Black Silver];
-    Sideboard "sideboard" [160 45 82] +- 15 "wood" [Brown White LightBrown DarkBrown];
-    Bed "bed" [160 206 100] +- 0 "fabric" [White Blue Grey Green Red Purple Beige];
-    Nightstand "nightstand" [46 42 54] +- 2 "wood" [Brown White LightBrown DarkBrown];
-    Wardrobe "wardrobe" [150 60 205] +- 20 "wood" [White Brown LightBrown DarkBrown];
-    Dresser "dresser" [116 48 84] +- 10 "wood" [White Brown LightBrown DarkBrown];
-    Bench "bench" [120 40 46] +- 8 "wood" [Brown Beige LightBrown];
-    Desk "desk" [140 66 75] +- 10 "wood" [Brown White LightBrown DarkBrown];
+    Sideboard "sideboard" [160 45 82] +- 15 "wood" [Brown White Wooden Blue Green Grey Black];
+    Bed "bed" [160 206 100] +- 0 "fabric" [White Blue Grey Green Red Purple Beige Yellow Pink];
+    Nightstand "nightstand" [46 42 54] +- 2 "wood" [Brown White Wooden Blue Black];
+    Wardrobe "wardrobe" [150 60 205] +- 20 "wood" [White Brown Wooden Grey Green];
+    Dresser "dresser" [116 48 84] +- 10 "wood" [White Brown Wooden Blue Green Grey Black];
+    Bench "bench" [120 40 46] +- 8 "wood" [Brown White Wooden Green];
+    Desk "desk" [140 66 75] +- 10 "wood" [Wooden White Brown Black Grey];
     OfficeChair "office chair" [60 60 108] +- 0 "fabric" [Black Grey Blue];
     Computer "computer" [58 22 46] +- 4 "plastic" [Black];
     FilingCabinet "filing cabinet" [46 56 104] +- 0 "metal" [Grey Black White];
     Globe "globe" [30 30 40] +- 0 "plastic" [Blue];
     Whiteboard "whiteboard" [130 4 90] +- 10 "plastic" [White];
-    ConsoleTable "console table" [105 34 80] +- 10 "wood" [Brown White LightBrown DarkBrown];
+    ConsoleTable "console table" [105 34 80] +- 10 "wood" [Brown White Wooden Black Glass Green];
     Washer "washing machine" [62 62 88] +- 0 "metal" [White];
     Dryer "dryer" [62 62 88] +- 0 "metal" [White Grey];
-    LaundryBasket "laundry basket" [46 40 56] +- 2 "wicker" [LightBrown Beige White];
+    LaundryBasket "laundry basket" [46 40 56] +- 2 "wicker" [Brown Beige White];
     IroningBoard "ironing board" [120 36 90] +- 0 "fabric" [Blue Red Grey];
-    Shelf "shelf" [90 28 40] +- 6 "wood" [White Brown LightBrown];
-    CoatRack "coat rack" [50 50 178] +- 0 "wood" [Brown Black];
-    ShoeRack "shoe rack" [80 34 54] +- 8 "wood" [Brown White LightBrown];
+    Shelf "shelf" [90 28 40] +- 6 "wood" [White Brown Wooden Black];
+    CoatRack "coat rack" [50 50 178] +- 0 "wood" [Brown Black Wooden];
+    ShoeRack "shoe rack" [80 34 54] +- 8 "wood" [Brown White Wooden];
     DoorMat "doormat" [84 54 2] +- 0 "coir" [Brown DarkGrey];
     ClothesRack "clothes rack" [120 50 170] +- 15 "metal" [Silver];
-    Boxes "cardboard boxes" [70 50 84] +- 6 "cardboard" [LightBrown];
+    Boxes "cardboard boxes" [70 50 84] +- 6 "cardboard" [Brown];
     Car "car" [178 400 146] +- 0 "metal" [Red Blue Silver White Green];
-    Workbench "workbench" [150 60 92] +- 10 "wood" [LightBrown Brown];
+    Workbench "workbench" [150 60 92] +- 10 "wood" [Wooden Brown];
     MetalShelf "metal shelf" [110 45 180] +- 10 "metal" [Grey Silver];
-    ClosetDoor "closet door" [160 6 212] +- 0 "wood" [White LightBrown Brown Grey];
-    WallBookshelf "bookshelf" [120 10 208] +- 0 "wood" [White Brown LightBrown DarkBrown];
+    ClosetDoor "closet door" [160 6 212] +- 0 "wood" [White Wooden Brown Grey];
+    WallBookshelf "bookshelf" [120 10 208] +- 0 "wood" [White Brown Wooden Black];
     Radiator "radiator" [100 9 58] +- 0 "metal" [White];
-    Tapestry "tapestry" [140 4 170] +- 0 "wool" [Red Blue Teal Green Orange Purple];
     Bicycle "bicycle" [168 50 104] +- 0 "metal" [Red Blue Green Black];
 }
 
@@ -152,7 +157,11 @@ impl FurnitureKind {
                 | Self::ClosetDoor
                 | Self::WallBookshelf
                 | Self::Radiator
+                | Self::Photos
                 | Self::Tapestry
+                | Self::CoatHooks
+                | Self::BulletinBoard
+                | Self::ToolBoard
         )
     }
 }

@@ -32,7 +32,8 @@ palette! {
     Cream "cream" [238, 226, 198];
     Beige "beige" [212, 192, 158];
     LightBrown "light brown" [190, 144, 96];
-    Brown "brown" [136, 88, 52];
+    Brown "brown" [122, 74, 42];
+    Wooden "wooden" [206, 160, 106];
     DarkBrown "dark brown" [88, 56, 36];
     Black "black" [38, 38, 42];
     Grey "grey" [150, 152, 156];
@@ -49,9 +50,16 @@ palette! {
     Purple "purple" [122, 82, 146];
     Pink "pink" [222, 158, 168];
     Gold "gold" [206, 166, 84];
+    Glass "glass" [190, 216, 222];
 }
 
 impl Colour {
+    /// Whether the grain of wood shows in it; paint hides the grain.
+    #[must_use]
+    pub fn shows_grain(self) -> bool {
+        matches!(self, Self::Wooden | Self::LightBrown | Self::Brown | Self::DarkBrown)
+    }
+
     /// As a factor for a light grey texture or as a plain colour, 0..=1 per channel, gamma-encoded.
     #[must_use]
     pub fn factor(self) -> [f32; 3] {

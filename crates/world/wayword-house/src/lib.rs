@@ -10,6 +10,7 @@ mod ground;
 mod home;
 mod labels;
 mod layout;
+mod leaf;
 mod light;
 pub mod model;
 mod names;

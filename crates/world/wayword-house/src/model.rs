@@ -3,6 +3,7 @@
 use super::{
     catalogue::FurnitureKind,
     colour::Colour,
+    leaf::OpenLeaf,
     rect::{RectCm, SpanCm, Wall},
 };
 use serde::{Deserialize, Serialize};
@@ -121,6 +122,8 @@ pub enum Leaf {
         into: usize,
         /// Whether it hangs at the lower end.
         hinge_low: bool,
+        /// Angle between the leaf and its wall, degrees: 0 would be closed.
+        angle_deg: i32,
     },
     /// A closed house door.
     Closed,
@@ -242,25 +245,10 @@ impl Opening {
         }
     }
 
-    /// Footprint of a leaf that stands open at a right angle to the wall: as long as the opening is wide, and `thick`
-    /// centimetres thick. `None` where no leaf stands open.
+    /// Squares of floor that together hold a leaf that stands open; none where no leaf does.
     #[must_use]
-    pub fn open_leaf(&self, rooms: &[Room], thick: i32) -> Option<RectCm> {
-        let Leaf::Open { into, hinge_low } = self.leaf else {
-            return None;
-        };
-        let (dx, dy) = rooms.get(into)?.outline.wall_of(&self.span)?.inward();
-        let along =
-            if hinge_low { (self.span.from, self.span.from + thick) } else { (self.span.to - thick, self.span.to) };
-        let step = dx + dy;
-        let (near, far) =
-            (self.span.at + step * HALF_WALL_CM, self.span.at + step * (HALF_WALL_CM + self.span.length()));
-        let (low, high) = (near.min(far), near.max(far));
-        Some(if self.span.along_x {
-            RectCm::new(along.0, low, along.1, high)
-        } else {
-            RectCm::new(low, along.0, high, along.1)
-        })
+    pub fn open_leaf(&self, rooms: &[Room]) -> Vec<RectCm> {
+        OpenLeaf::of(self, rooms).map_or_else(Vec::new, |leaf| leaf.footprint())
     }
 }
 

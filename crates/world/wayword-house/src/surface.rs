@@ -127,8 +127,7 @@ impl Surface {
     }
 
     pub(crate) fn wood(colour: Colour) -> Self {
-        // White paint hides the grain.
-        let pattern = if colour == Colour::White { Pattern::Plain } else { Pattern::Wood };
+        let pattern = if colour.shows_grain() { Pattern::Wood } else { Pattern::Plain };
         Self::new(pattern, colour.rgb())
     }
 

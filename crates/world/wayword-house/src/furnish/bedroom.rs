@@ -4,7 +4,6 @@ use super::super::{catalogue::FurnitureKind as K, rect::RectCm};
 use super::placing::{Along, Furnisher};
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {
-    let wood = room.taste.wood;
     let walls = room.quiet_walls();
     let width = if room.inner.width().min(room.inner.depth()) > 300 { room.dice.pick([160, 160, 180]) } else { 120 };
     let bed = room.stand_sized(K::Bed, [width, 206, 100], &walls, Along::Middle, 50);
@@ -12,7 +11,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     if let Some(bed) = bed {
         for gap in [4, -4] {
             if let Some(stand) = room.beside(bed, K::Nightstand, gap) {
-                room.paint(stand, wood);
+                room.finish(stand);
                 room.on_top(stand, K::TableLamp, 0, 0);
             }
         }
@@ -22,10 +21,10 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         room.lay(K::Rug, before.centre(), size, room.wall_behind(bed));
     }
     if let Some(wardrobe) = room.stand_anywhere(K::Wardrobe, Along::Ends, 60) {
-        room.paint(wardrobe, wood);
+        room.finish(wardrobe);
     }
     if let Some(dresser) = room.stand_anywhere(K::Dresser, Along::Middle, 60) {
-        room.paint(dresser, wood);
+        room.finish(dresser);
         room.hang_over(dresser, K::Mirror, 12);
     }
     if room.dice.chance(60) {
@@ -47,7 +46,7 @@ pub(super) fn desk(room: &mut Furnisher<'_>) {
     let Some(desk) = room.stand(K::Desk, &walls, Along::Middle, 70) else {
         return;
     };
-    room.paint(desk, room.taste.wood);
+    room.finish(desk);
     room.on_top(desk, K::Computer, 0, -8);
     if room.dice.chance(70) {
         room.on_top(desk, K::TableLamp, 48, -10);

@@ -15,7 +15,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
         let footprint = RectCm::new(x - w / 2, y - d / 2, x + w / 2, y + d / 2);
         let wall = if along_x { Wall::North } else { Wall::West };
         if let Some(table) = room.try_at(K::DiningTable, footprint, wall, false) {
-            room.paint(table, room.taste.wood);
+            room.finish(table);
             room.on_top(table, K::Vase, 0, 0);
             chairs(room, footprint, along_x, length);
             break;
@@ -23,7 +23,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     }
     let walls = room.quiet_walls();
     if let Some(sideboard) = room.stand(K::Sideboard, &walls, Along::Middle, 45) {
-        room.paint(sideboard, room.taste.wood);
+        room.finish(sideboard);
         room.on_top(sideboard, K::TableLamp, 45, 0);
         room.hang_over(sideboard, K::Painting, 50);
     }

@@ -51,7 +51,7 @@ fn breakfast(room: &mut Furnisher<'_>) {
     let Some(table) = room.stand_sized(K::DiningTable, [90, 70, 75], &walls, Along::Anywhere, 70) else {
         return;
     };
-    room.paint(table, room.taste.wood);
+    room.finish(table);
     for gap in [2, -2] {
         room.beside(table, K::Chair, gap);
     }

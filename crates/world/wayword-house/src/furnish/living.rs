@@ -21,7 +21,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
     room.stand_anywhere(K::Armchair, Along::Anywhere, 40);
     if let Some(sideboard) = room.stand_anywhere(K::Sideboard, Along::Middle, 50) {
-        room.paint(sideboard, room.taste.wood);
+        room.finish(sideboard);
         room.on_top(sideboard, K::Vase, 30, 0);
         room.hang_over(sideboard, K::Painting, 50);
     }
@@ -49,13 +49,13 @@ fn around_sofa(room: &mut Furnisher<'_>, sofa: Piece) {
     let (w, d) = if wall.along_x() { (table[0], table[1]) } else { (table[1], table[0]) };
     let footprint = RectCm::new(x - w / 2, y - d / 2, x - w / 2 + w, y - d / 2 + d);
     if let Some(table) = room.try_at(K::CoffeeTable, footprint, wall, true) {
-        room.paint(table, room.taste.wood);
+        room.finish(table);
         if room.dice.chance(60) {
             room.on_top(table, K::Vase, 10, 0);
         }
     }
     if let Some(table) = room.beside(sofa, K::SideTable, 6) {
-        room.paint(table, room.taste.wood);
+        room.finish(table);
         room.on_top(table, K::TableLamp, 0, 0);
     }
     room.hang_over(sofa, K::Painting, 45);

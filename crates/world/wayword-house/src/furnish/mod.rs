@@ -2,14 +2,17 @@
 
 mod bathroom;
 mod bedroom;
+mod built_in;
 mod dining;
-mod dressing;
+mod dress;
+mod finish;
 mod kitchen;
 mod living;
 mod office;
 mod placing;
 mod reach;
 mod service;
+mod stairwell;
 mod walls;
 
 use super::{
@@ -27,25 +30,24 @@ pub(super) struct Taste {
     pub(super) wood: Colour,
     pub(super) kitchen: Colour,
     pub(super) curtain: Colour,
-    pub(super) closet: Colour,
 }
 
 /// All furniture of a house. Each room has its own dice, so that the choices in one room do not change the next.
 pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
     let mut dice = Dice::new(seed, &["taste"]);
     let taste = Taste {
-        wood: dice.pick([Colour::Brown, Colour::LightBrown, Colour::DarkBrown, Colour::White]),
-        kitchen: dice.pick([Colour::White, Colour::Grey, Colour::Blue, Colour::Green, Colour::LightBrown]),
+        wood: finish::of_house(&mut dice),
+        kitchen: finish::of_kitchen(&mut dice),
         curtain: dice.pick([Colour::Beige, Colour::Grey, Colour::Blue, Colour::White]),
-        closet: dice.pick([Colour::White, Colour::White, Colour::LightBrown, Colour::Brown, Colour::Grey]),
     };
     let mut pieces = Vec::new();
     for index in 0..layout.rooms.len() {
         let mut room = Furnisher::new(seed, layout, index, taste);
         furnish_room(&mut room, layout.rooms[index].kind);
-        dressing::dress(&mut room, layout.rooms[index].kind);
-        if let Some(stairs) = layout.stairs.as_ref().filter(|stairs| stairs.room == index) {
-            dressing::dress_stairs(&mut room, stairs);
+        built_in::furnish(&mut room, layout.rooms[index].kind);
+        match layout.stairs.as_ref().filter(|stairs| stairs.room == index) {
+            Some(stairs) => stairwell::furnish(&mut room, stairs),
+            None => room.dress_walls(),
         }
         pieces.extend(room.into_pieces());
     }

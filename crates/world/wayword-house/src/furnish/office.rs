@@ -12,7 +12,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     let walls = room.windowless(&walls);
     for _ in 0..2 {
         if let Some(shelf) = room.stand(K::Bookshelf, &walls, Along::Ends, 50) {
-            room.paint(shelf, room.taste.wood);
+            room.finish(shelf);
         }
     }
     if let Some(cabinet) = room.stand_anywhere(K::FilingCabinet, Along::Ends, 45) {

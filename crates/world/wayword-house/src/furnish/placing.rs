@@ -5,15 +5,16 @@ use super::super::{
     colour::Colour,
     dice::Dice,
     layout::{Layout, swing},
-    model::{CEILING_CM, Furniture, LEAF_CM, Leaf, Opening, Room},
+    model::{CEILING_CM, Furniture, Leaf, Opening, Room},
     rect::{RectCm, SpanCm, Wall},
 };
-use super::{Taste, reach};
+use super::{Taste, finish::Finishes, reach};
 
 /// A room while it is being furnished.
 pub(super) struct Furnisher<'a> {
     pub(super) dice: Dice,
     pub(super) taste: Taste,
+    pub(super) finishes: Finishes,
     pub(super) room: &'a Room,
     index: usize,
     /// The area between the walls.
@@ -42,7 +43,12 @@ pub(super) enum Along {
 }
 
 /// Least distance between something that hangs on a wall and its neighbours, centimetres.
-const BESIDE_CM: i32 = 14;
+const BESIDE_CM: i32 = 8;
+
+/// The same for the frames of doors and windows, centimetres.
+const FRAME_CM: i32 = 10;
+/// Nothing hangs nearer to an open door's leaf than this, centimetres.
+const BEHIND_LEAF_CM: i32 = 12;
 
 /// A piece in the room: its index in the list.
 pub(super) type Piece = usize;
@@ -56,6 +62,7 @@ impl<'a> Furnisher<'a> {
         Self {
             dice: Dice::new(seed, &["furniture", &index.to_string()]),
             taste,
+            finishes: Finishes::of_room(seed, index, room.kind, taste.wood),
             room,
             index,
             inner: room.inner(),
@@ -66,7 +73,7 @@ impl<'a> Furnisher<'a> {
             holes: openings().map(|opening| opening.span).collect(),
             leaves: openings()
                 .filter(|opening| matches!(opening.leaf, Leaf::Open { into, .. } if into == index))
-                .filter_map(|opening| opening.open_leaf(&layout.rooms, LEAF_CM))
+                .flat_map(|opening| opening.open_leaf(&layout.rooms))
                 .collect(),
             front_door: openings().find(|opening| opening.leaf == Leaf::Closed).map(|opening| opening.span),
             windows: windows.map(|window| (window.span, window.sill_cm - room.base_cm())).collect(),
@@ -113,7 +120,7 @@ impl<'a> Furnisher<'a> {
             kind,
             name: entry.name.to_owned(),
             colour,
-            material: entry.material.to_owned(),
+            material: if colour == Colour::Glass { "glass" } else { entry.material }.to_owned(),
             room: self.index,
             footprint,
             base_cm: self.room.base_cm() + base_cm,
@@ -288,7 +295,7 @@ impl<'a> Furnisher<'a> {
     }
 
     fn touches_fixed(&self, footprint: &RectCm) -> bool {
-        self.doorsteps.iter().any(|area| area.overlaps(footprint))
+        self.doorsteps.iter().chain(&self.leaves).any(|area| area.overlaps(footprint))
             || self.standing().any(|area| area.overlaps(footprint))
     }
 
@@ -348,18 +355,25 @@ impl<'a> Furnisher<'a> {
         self.put(kind, footprint, CEILING_CM - height, height, Wall::North)
     }
 
-    /// Whether a stretch of wall between two heights has no opening, no window and nothing in front of it.
-    pub(super) fn wall_is_bare(&self, wall: Wall, area: &RectCm, base: i32, top: i32) -> bool {
-        let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened(14).overlaps(area));
+    /// Whether a stretch of wall between two heights has no opening, no window and nothing in front of it. What is
+    /// `slim` may hang beside a door where one walks by.
+    pub(super) fn wall_is_bare(&self, wall: Wall, area: &RectCm, base: i32, top: i32, slim: bool) -> bool {
+        let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened(FRAME_CM).overlaps(area));
         let window = self
             .windows
             .iter()
-            .any(|(span, sill)| self.is_on(wall, span) && span.thickened(30).overlaps(area) && *sill < top);
+            .any(|(span, sill)| self.is_on(wall, span) && span.thickened(FRAME_CM).overlaps(area) && *sill < top);
         let floor = self.room.base_cm();
         let piece = self.pieces.iter().any(|piece| {
             let (low, high) = (piece.base_cm - floor, piece.base_cm - floor + piece.height_cm);
             low < top && base < high && piece.footprint.inset(-BESIDE_CM).overlaps(area)
         });
-        !(hole || window || piece || self.doorsteps.iter().any(|step| step.overlaps(area)))
+        // Somebody who comes in would run into what is deep, but not into a picture.
+        let blocked = if slim {
+            self.leaves.iter().any(|leaf| leaf.inset(-BEHIND_LEAF_CM).overlaps(area))
+        } else {
+            self.doorsteps.iter().any(|step| step.overlaps(area))
+        };
+        !(hole || window || piece || blocked)
     }
 }

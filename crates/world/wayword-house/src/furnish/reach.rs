@@ -25,10 +25,14 @@ pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[
     let largest = parts.sizes.iter().copied().max().unwrap_or(0);
     let total: usize = parts.sizes.iter().sum();
     let part_of = |step: &RectCm| {
-        let (x, y) = step.centre();
-        let column = ((x - inner.x0) / CELL_CM).clamp(0, columns - 1);
-        let row = ((y - inner.y0) / CELL_CM).clamp(0, rows - 1);
-        parts.part[(row * columns + column) as usize]
+        let cell = |cm: i32, count: i32| (cm / CELL_CM).clamp(0, count - 1);
+        let (left, right) = (cell(step.x0 - inner.x0, columns), cell(step.x1 - 1 - inner.x0, columns));
+        let (low, high) = (cell(step.y0 - inner.y0, rows), cell(step.y1 - 1 - inner.y0, rows));
+        // A leaf that stands ajar may cover the middle, so any free place on the doorstep counts; the nearest to its
+        // middle first.
+        let mut cells: Vec<_> = (low..=high).flat_map(|row| (left..=right).map(move |column| (column, row))).collect();
+        cells.sort_by_key(|(column, row)| (2 * column - left - right).abs() + (2 * row - low - high).abs());
+        cells.into_iter().find_map(|(column, row)| parts.part[(row * columns + column) as usize])
     };
     let steps: Vec<_> = doorsteps.iter().map(part_of).collect();
     let joined = steps.iter().all(|part| part.is_some() && *part == steps[0]);

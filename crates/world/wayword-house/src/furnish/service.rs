@@ -17,7 +17,7 @@ pub(super) fn hallway(room: &mut Furnisher<'_>) {
     if room.dice.chance(70) {
         let walls = room.shuffled_walls();
         if let Some(table) = room.stand_sized(K::ConsoleTable, [90, 26, 80], &walls, Along::Middle, 60) {
-            room.paint(table, room.taste.wood);
+            room.finish(table);
             room.on_top(table, K::Vase, 0, 0);
             room.hang_over(table, K::Mirror, 20);
         }
@@ -41,11 +41,11 @@ pub(super) fn laundry(room: &mut Furnisher<'_>) {
 pub(super) fn entryway(room: &mut Furnisher<'_>) {
     room.stand_anywhere(K::CoatRack, Along::Ends, 0);
     if let Some(rack) = room.stand_anywhere(K::ShoeRack, Along::Middle, 50) {
-        room.paint(rack, room.taste.wood);
+        room.finish(rack);
         room.hang_over(rack, K::Mirror, 50);
     }
     if let Some(bench) = room.stand_anywhere(K::Bench, Along::Middle, 50) {
-        room.paint(bench, room.taste.wood);
+        room.finish(bench);
     }
     if let Some((wall, place)) = room.front_doorstep() {
         let mat = K::DoorMat.size_cm(&mut room.dice);
@@ -59,7 +59,7 @@ pub(super) fn closet(room: &mut Furnisher<'_>) {
     room.stand(K::ClothesRack, &walls, Along::Ends, 40);
     room.stand(K::ClothesRack, &walls, Along::Ends, 40);
     if let Some(rack) = room.stand(K::ShoeRack, &walls, Along::Ends, 40) {
-        room.paint(rack, room.taste.wood);
+        room.finish(rack);
     }
     room.stand(K::Boxes, &walls, Along::Ends, 0);
     room.hang(K::Shelf, 180);

@@ -43,7 +43,8 @@ impl Furnisher<'_> {
         size: [i32; 3],
     ) -> Option<Piece> {
         let area = self.at_wall(wall, from, size);
-        let fits = self.inner.contains(&area) && self.wall_is_bare(wall, &area, base, base + size[2]);
+        let fits =
+            self.inner.contains(&area) && self.wall_is_bare(wall, &area, base, base + size[2], kind.is_slim_on_wall());
         fits.then(|| self.put(kind, area, base, size[2], wall))
     }
 

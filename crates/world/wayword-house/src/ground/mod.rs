@@ -10,7 +10,7 @@ mod grid;
 mod walk;
 
 use super::{
-    model::{HALF_WALL_CM, House, LEAF_CM, Opening, STOREY_CM, Stairs},
+    model::{HALF_WALL_CM, House, Opening, STOREY_CM, Stairs},
     rect::RectCm,
 };
 pub use geodesic::Way;
@@ -180,7 +180,7 @@ fn floor_layer(house: &House, floor: u32) -> Layer {
             && piece.base_cm < base + HEADROOM_CM
     };
     let furniture = house.furniture.iter().filter(in_way).map(|piece| piece.footprint);
-    let leaves = house.openings.iter().filter(here).filter_map(|opening| opening.open_leaf(&house.rooms, LEAF_CM));
+    let leaves = house.openings.iter().filter(here).flat_map(|opening| opening.open_leaf(&house.rooms));
     Layer { open, blocked: furniture.chain(leaves).map(|area| area.inset(-RADIUS_CM)).collect() }
 }
 
@@ -205,7 +205,10 @@ fn stairs_layer(house: &House, stairs: &Stairs) -> Layer {
         stairs.across(from + RADIUS_CM, to - RADIUS_CM, [-APRON_CM, end])
     };
     let landing = stairs.across(RADIUS_CM, stairs.width_cm() - RADIUS_CM, [stairs.flight_cm + RADIUS_CM, end]);
-    let furniture = house.furniture.iter().filter(|piece| piece.room == stairs.room && piece.base_cm < STOREY_CM);
+    let furniture = house
+        .furniture
+        .iter()
+        .filter(|piece| piece.room == stairs.room && !piece.kind.is_slim_on_wall() && piece.base_cm < STOREY_CM);
     let blocked = furniture.map(|piece| piece.footprint.inset(-RADIUS_CM)).collect();
     Layer { open: vec![flight(true), flight(false), landing], blocked }
 }

@@ -3,6 +3,7 @@
 //! A hallway runs between two strips of rooms; at one end a block of two rooms fills the house's whole depth. Houses
 //! of two storeys have the same stairwell on both. The whole plan is then mirrored or turned.
 
+mod ajar;
 mod openings;
 mod orientation;
 mod program;
@@ -99,7 +100,8 @@ pub(super) fn lay_out(seed: u64) -> Layout {
     plan.orient(&mut dice);
     let rooms = finish(&mut dice, &plan);
     let mut ids = Ids(1);
-    let openings = openings::cut(&mut dice, &plan, &rooms, &mut ids);
+    let mut openings = openings::cut(&mut dice, &plan, &rooms, &mut ids);
+    ajar::turn(seed, &rooms, &mut openings);
     let windows = windows::cut(&plan, &rooms, &openings, &mut ids);
     let stairs = plan.stairs(&rooms, &mut ids);
     Layout { storeys, rooms, openings, windows, stairs, next_id: ids.next() }
@@ -117,7 +119,7 @@ impl Ids {
 
 fn shell(dice: &mut Dice, storeys: u32) -> Shell {
     let block = dice.stepped(430, 540, 10);
-    let (south, hall, north) = (dice.stepped(370, 430, 10), dice.stepped(120, 150, 10), dice.stepped(350, 410, 10));
+    let (south, hall, north) = (dice.stepped(370, 430, 10), dice.stepped(160, 200, 10), dice.stepped(350, 410, 10));
     let width = if storeys == 2 { block + dice.stepped(800, 920, 10) } else { dice.stepped(1240, 1520, 10) };
     let well = (storeys == 2).then(|| {
         let from = if dice.chance(50) { block } else { block + dice.stepped(300, 360, 10) };

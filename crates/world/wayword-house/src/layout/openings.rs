@@ -16,8 +16,8 @@ const DOORWAY_HEIGHT_CM: i32 = 220;
 const CORNER_CM: i32 = 16;
 
 pub(super) fn cut(dice: &mut Dice, plan: &Plan, rooms: &[Room], ids: &mut Ids) -> Vec<Opening> {
-    let colour = dice.pick([Colour::White, Colour::White, Colour::LightBrown, Colour::Brown]);
-    let front = dice.pick([Colour::Red, Colour::Blue, Colour::Green, Colour::DarkBrown, Colour::Black]);
+    let colour = dice.pick([Colour::White, Colour::White, Colour::Wooden, Colour::Brown, Colour::Grey]);
+    let front = dice.pick([Colour::Red, Colour::Blue, Colour::Green, Colour::Brown, Colour::Black]);
     let mut openings = Vec::new();
     // Doorways first: they have only one good place, but doors can be moved.
     let (doors, others): (Vec<Link>, Vec<Link>) = plan.links.iter().partition(|link| link.how == Passage::Door);
@@ -106,8 +106,9 @@ fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[O
         places.reverse();
     }
     places.extend((low..=high).step_by(10).flat_map(|from| [(from, true), (from, false)]));
-    let candidate =
-        |(from, hinge_low): (i32, bool)| (SpanCm { from, to: from + width, ..*edge }, Leaf::Open { into, hinge_low });
+    let candidate = |(from, hinge_low): (i32, bool)| {
+        (SpanCm { from, to: from + width, ..*edge }, Leaf::Open { into, hinge_low, angle_deg: 90 })
+    };
     // Hallways are not checked: no leaf opens into them, so doors may face each other there.
     let sides =
         [Some(link.room), link.beyond].into_iter().flatten().filter(|side| rooms[*side].kind != RoomKind::Hallway);

@@ -128,7 +128,7 @@ impl Scheme {
             walls: dice.pick([Colour::White, Colour::Cream, Colour::Beige, Colour::LightGreen]),
             hall: dice.pick([Colour::White, Colour::Cream, Colour::Beige]),
             kitchen: dice.pick([Colour::White, Colour::Cream, Colour::LightBlue, Colour::LightGreen]),
-            planks: dice.pick([Colour::LightBrown, Colour::Brown, Colour::Beige]),
+            planks: dice.pick([Colour::LightBrown, Colour::Brown, Colour::Beige, Colour::Grey]),
             tiles: dice.pick([Colour::White, Colour::Grey, Colour::Beige]),
             carpet: dice.pick([Colour::Beige, Colour::Grey, Colour::Cream]),
             carpeted_bedrooms: dice.chance(50),

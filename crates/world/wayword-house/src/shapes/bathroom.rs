@@ -42,8 +42,7 @@ pub(super) fn toilet(look: &Look) -> Shape {
 pub(super) fn vanity(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let ((hw, hd), china) = (look.half(), Surface::plain(CHINA));
-    let wood =
-        Surface::wood([Colour::LightBrown, Colour::Grey, Colour::White, Colour::Brown][look.variant as usize % 4]);
+    let wood = Surface::wood([Colour::Wooden, Colour::Grey, Colour::White, Colour::Brown][look.variant as usize % 4]);
     shape.block(wood.shade(0.8), [-hw + 0.02, hw - 0.02], [-hd + 0.04, hd], [0.12, look.h - 0.08]);
     for (x0, x1, knob) in [(-hw + 0.02, 0.0, -0.05), (0.0, hw - 0.02, 0.05)] {
         shape.block(wood, [x0 + 0.006, x1 - 0.006], [-hd + 0.02, -hd + 0.042], [0.13, look.h - 0.09]);

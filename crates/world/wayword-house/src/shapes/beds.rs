@@ -9,7 +9,7 @@ use super::{
 pub(super) fn bed(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let (hw, hd) = look.half();
-    let wood = Surface::wood(if look.variant.is_multiple_of(2) { Colour::Brown } else { Colour::LightBrown });
+    let wood = Surface::wood([Colour::Brown, Colour::Wooden, Colour::White, Colour::Black][look.variant as usize % 4]);
     let white = Surface::fabric(Colour::White);
     let blanket = Surface::fabric(if look.colour == Colour::White { Colour::Cream } else { look.colour });
     shape.legs(wood.shade(0.8), (hw, hd), 0.08, 0.16);

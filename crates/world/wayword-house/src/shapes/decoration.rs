@@ -1,4 +1,4 @@
-//! Decoration: things that hang on walls or lie on floors, and showpieces.
+//! Decoration: things that hang on walls or lie on floors.
 
 use super::{
     super::{
@@ -27,25 +27,6 @@ pub(super) fn painting(look: &Look) -> Shape {
     shape
 }
 
-/// A woven hanging on a rod.
-pub(super) fn tapestry(look: &Look) -> Shape {
-    let mut shape = Shape::default();
-    let (hw, hd) = look.half();
-    let rod = Surface::wood(Colour::DarkBrown);
-    shape.rod(rod, Vec3::new(-hw, 0.0, look.h - 0.02), Vec3::new(hw, 0.0, look.h - 0.02), 0.016);
-    let cloth = Surface::new(Pattern::Ornament, look.colour.rgb());
-    let (x, low) = ([-hw + 0.04, hw - 0.04], 0.07);
-    shape.block(cloth.shade(0.9), x, [-hd + 0.012, hd], [low, look.h - 0.02]);
-    let size = (Vec3::X * (x[1] - x[0]), Vec3::Z * (look.h - 0.02 - low));
-    shape.picture(cloth, Vec3::new(x[0], -hd + 0.008, low), size.0, size.1);
-    let tassels = ((x[1] - x[0]) / 0.06) as usize;
-    for tassel in 0..tassels {
-        let at = x[0] + 0.06 * tassel as f32 + 0.02;
-        shape.block(cloth.shade(0.8), [at, at + 0.02], [-hd + 0.008, hd], [0.0, low]);
-    }
-    shape
-}
-
 /// Ribs between two pipes.
 pub(super) fn radiator(look: &Look) -> Shape {
     let mut shape = Shape::default();
@@ -70,7 +51,7 @@ fn art_of(colour: Colour) -> u8 {
 /// A framed surface with the bluish sheen of glass. It does not reflect the room.
 pub(super) fn mirror(look: &Look) -> Shape {
     let mut shape = Shape::default();
-    let frame = Surface::wood([Colour::Gold, Colour::White, Colour::DarkBrown][look.variant as usize % 3]);
+    let frame = Surface::wood([Colour::Gold, Colour::White, Colour::Black][look.variant as usize % 3]);
     framed(&mut shape, look, frame, 0.045, Surface::picture(Pattern::Reflection).glowing());
     shape
 }
@@ -150,55 +131,5 @@ pub(super) fn curtain(look: &Look) -> Shape {
     }
     let (from, to) = (Vec3::new(-hw - 0.06, 0.0, look.h - 0.03), Vec3::new(hw + 0.06, 0.0, look.h - 0.03));
     shape.rod(Surface::metal(Colour::DarkGrey), from, to, 0.014);
-    shape
-}
-
-/// A surround with a mantel, and a fire behind it.
-pub(super) fn fireplace(look: &Look) -> Shape {
-    let mut shape = Shape::default();
-    let (hw, hd) = look.half();
-    let stone = match look.colour {
-        Colour::Red => Surface::new(Pattern::Brick, [255; 3]),
-        colour => Surface::new(Pattern::Marble, colour.rgb()),
-    };
-    let (open_w, open_h) = (hw * 0.58, look.h * 0.66);
-    shape.block(stone, [-hw, -open_w], [-hd + 0.04, hd], [0.0, look.h - 0.08]);
-    shape.block(stone, [open_w, hw], [-hd + 0.04, hd], [0.0, look.h - 0.08]);
-    shape.block(stone, [-open_w, open_w], [-hd + 0.04, hd], [open_h, look.h - 0.08]);
-    shape.block(stone.shade(1.04), [-hw - 0.06, hw + 0.06], [-hd, hd], [look.h - 0.08, look.h]);
-    let soot = Surface::plain([30, 26, 24]);
-    shape.block(soot, [-open_w, open_w], [hd - 0.04, hd - 0.02], [0.0, open_h]);
-    shape.block(soot, [-open_w, open_w], [-hd + 0.06, hd], [0.0, 0.03]);
-    let wood = Surface::wood(Colour::DarkBrown);
-    for (x, z) in [(-0.16, 0.08), (0.14, 0.08), (0.0, 0.15)] {
-        shape.rod(wood, Vec3::new(x - 0.2, -0.04, z), Vec3::new(x + 0.2, 0.04, z + 0.02), 0.05);
-    }
-    let fire = Surface::picture(Pattern::Fire).glowing();
-    shape.picture(fire, Vec3::new(-open_w * 0.8, hd - 0.05, 0.04), Vec3::X * open_w * 1.6, Vec3::Z * open_h * 0.85);
-    shape
-}
-
-/// An upright piano with its keys, and a score on the stand.
-pub(super) fn piano(look: &Look) -> Shape {
-    let mut shape = Shape::default();
-    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
-    shape.block(wood, [-hw, hw], [hd - 0.32, hd], [0.0, look.h]);
-    shape.block(wood.shade(1.15), [-hw - 0.01, hw + 0.01], [hd - 0.34, hd], [look.h - 0.03, look.h]);
-    shape.block(wood.shade(0.9), [-hw, hw], [-hd + 0.02, hd - 0.3], [0.62, 0.7]);
-    for x in [-hw, hw - 0.06] {
-        shape.block(wood, [x, x + 0.06], [-hd + 0.02, hd], [0.0, 0.78]);
-    }
-    shape.block(Surface::plain([250, 249, 244]), [-hw + 0.08, hw - 0.08], [-hd + 0.03, hd - 0.34], [0.7, 0.722]);
-    let key = (look.w - 0.16) / 36.0;
-    for at in 1..36 {
-        let x = -hw + 0.08 + key * at as f32;
-        let line = Surface::plain([120, 120, 118]);
-        shape.block(line, [x - 0.0015, x + 0.0015], [-hd + 0.03, hd - 0.34], [0.722, 0.7225]);
-        if ![3, 0].contains(&(at % 7)) {
-            shape.block(Surface::plain([20, 20, 22]), [x - 0.009, x + 0.009], [-hd + 0.1, hd - 0.34], [0.722, 0.735]);
-        }
-    }
-    shape.block(Surface::plain([244, 240, 228]), [-0.2, 0.2], [hd - 0.36, hd - 0.345], [0.82, 1.08]);
-    shape.block(Surface::plain([120, 120, 118]), [-0.003, 0.003], [hd - 0.362, hd - 0.36], [0.82, 1.08]);
     shape
 }

@@ -6,11 +6,13 @@ mod builder;
 mod decoration;
 mod devices;
 mod garage;
+mod hangings;
 mod kitchen;
 mod lamps;
 mod laundry;
 mod plants;
 mod seating;
+mod showpieces;
 mod storage;
 mod tables;
 mod vehicles;
@@ -88,17 +90,22 @@ pub(crate) fn shape(kind: FurnitureKind, look: &Look) -> Shape {
         K::Towel => bathroom::towel(look),
         K::Mirror => decoration::mirror(look),
         K::Painting => decoration::painting(look),
-        K::Tapestry => decoration::tapestry(look),
         K::Radiator => decoration::radiator(look),
         K::ClosetDoor => storage::closet_door(look),
         K::WallBookshelf => storage::bookshelf(look),
         K::Clock => decoration::clock(look),
         K::Whiteboard => decoration::whiteboard(look),
+        K::Photos => hangings::photos(look),
+        K::Tapestry => hangings::tapestry(look),
+        K::CoatHooks => hangings::coat_hooks(look),
+        K::BulletinBoard => hangings::bulletin_board(look),
+        K::ToolBoard => hangings::tool_board(look),
+        K::GrandfatherClock => showpieces::grandfather_clock(look),
         K::Rug => decoration::rug(look),
         K::BathMat | K::DoorMat => decoration::mat(look),
         K::Curtain => decoration::curtain(look),
-        K::Fireplace => decoration::fireplace(look),
-        K::Piano => decoration::piano(look),
+        K::Fireplace => showpieces::fireplace(look),
+        K::Piano => showpieces::piano(look),
         K::Vase => plants::vase(look),
         K::Plant => plants::plant(look),
         K::Television => devices::television(look),

@@ -11,7 +11,7 @@ pub(super) fn sofa(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let ((hw, hd), fabric) = (look.half(), Surface::fabric(look.colour));
     let (arm, seat) = (0.16, 0.26);
-    let dark = Surface::wood(Colour::DarkBrown);
+    let dark = Surface::wood(Colour::Brown);
     shape.legs(dark, (hw - 0.02, hd - 0.02), 0.06, 0.1);
     shape.soft(fabric.shade(0.9), [-hw + 0.02, hw - 0.02], [-hd + 0.02, hd], [0.08, seat + 0.04], 0.03);
     shape.soft(fabric, [-hw, hw], [hd - 0.2, hd], [0.1, look.h], 0.08);

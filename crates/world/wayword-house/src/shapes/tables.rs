@@ -1,12 +1,19 @@
 //! Tables and desks.
 
 use super::{
-    super::{colour::Colour, surface::Surface},
+    super::{
+        colour::Colour,
+        surface::{Pattern, Surface},
+    },
     Look, Shape,
 };
+use glam::Vec3;
 
 /// A top on four legs.
 pub(super) fn table(look: &Look) -> Shape {
+    if look.colour == Colour::Glass {
+        return glass_table(look);
+    }
     let mut shape = Shape::default();
     let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
     shape.soft(wood, [-hw, hw], [-hd, hd], [look.h - 0.04, look.h], 0.012);
@@ -15,6 +22,26 @@ pub(super) fn table(look: &Look) -> Shape {
     shape.legs(wood.shade(0.92), (hw - 0.02, hd - 0.01), 0.06, look.h - 0.04);
     if look.h < 0.6 {
         shape.block(wood.shade(0.9), [-aw, aw], [-ad, ad], [0.12, 0.14]);
+    }
+    shape
+}
+
+/// A pane of glass on a steel frame, which shows below it.
+fn glass_table(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), steel) = (look.half(), Surface::metal(Colour::Silver));
+    let pane = Surface::new(Pattern::Reflection, [214, 236, 238]);
+    let top = Vec3::new(-hw, -hd, look.h);
+    shape.picture(pane, top, Vec3::X * look.w, Vec3::Y * look.d);
+    shape.block(Surface::plain([150, 196, 196]), [-hw, hw], [-hd, hd], [look.h - 0.018, look.h - 0.001]);
+    for y in [-hd + 0.06, hd - 0.06] {
+        shape.rod(steel, Vec3::new(-hw + 0.06, y, look.h - 0.03), Vec3::new(hw - 0.06, y, look.h - 0.03), 0.014);
+        for x in [-hw + 0.06, hw - 0.06] {
+            shape.rod(steel, Vec3::new(x, y, 0.0), Vec3::new(x, y, look.h - 0.02), 0.018);
+        }
+    }
+    if look.h < 0.6 {
+        shape.block(pane.shade(0.9), [-hw + 0.08, hw - 0.08], [-hd + 0.08, hd - 0.08], [0.14, 0.152]);
     }
     shape
 }

@@ -2,6 +2,7 @@
 
 use super::super::{
     colour::Colour,
+    leaf::OpenLeaf,
     model::{HALF_WALL_CM, House, LEAF_CM, Leaf, Opening},
     rect::{SpanCm, Wall},
     shapes::Shape,
@@ -40,34 +41,46 @@ fn frame(shape: &mut Shape, opening: &Opening) {
     bar([from, to], [top - 1, top + 6]);
 }
 
-/// A leaf at a right angle to the wall, with two panels and a knob on each side.
+/// An open leaf with two panels and a knob on each side.
 fn open_leaf(shape: &mut Shape, house: &House, opening: &Opening) {
-    let Some(area) = opening.open_leaf(&house.rooms, LEAF_CM) else {
+    let Some(leaf) = OpenLeaf::of(opening, &house.rooms) else {
         return;
     };
+    let mut standing = own_leaf(opening, super::metres(leaf.length_cm));
+    let turned = |x: f32, y: f32| {
+        let on = |along: f64, through: f64| along as f32 * x + through as f32 * y;
+        (on(leaf.along.0, leaf.through.0), on(leaf.along.1, leaf.through.1))
+    };
+    let hinge = Vec3::new(leaf.hinge.0 as f32, leaf.hinge.1 as f32, opening.base_cm as f32) / 100.0;
+    for part in &mut standing.parts {
+        for position in &mut part.positions {
+            let (x, y) = turned(position.x, position.y);
+            *position = hinge + Vec3::new(x, y, position.z);
+        }
+        for normal in &mut part.normals {
+            let (x, y) = turned(normal.x, normal.y);
+            *normal = Vec3::new(x, y, normal.z);
+        }
+        if leaf.is_mirrored() {
+            part.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        }
+    }
+    shape.parts.append(&mut standing.parts);
+}
+
+/// A leaf in its own frame: x from the hinge along it, y through it, metres.
+fn own_leaf(opening: &Opening, length: f32) -> Shape {
+    let mut shape = Shape::default();
     let paint = Surface::wood(opening.colour);
-    let (x, y) = ([area.x0, area.x1].map(super::metres), [area.y0, area.y1].map(super::metres));
-    let (base, top) = (super::metres(opening.base_cm), super::metres(opening.base_cm + opening.height_cm - 1));
-    shape.block(paint, x, y, [base + 0.008, top]);
-    let along_x = area.width() > area.depth();
-    let (long, thin) = if along_x { (x, y) } else { (y, x) };
-    for (low, high) in [(0.18, 0.9), (1.02, 1.86)] {
-        let (from, to) = (long[0] + 0.14, long[1] - 0.14);
-        let (out, z) = ([thin[0] - 0.006, thin[1] + 0.006], [base + low, base + high]);
-        let (px, py) = if along_x { ([from, to], out) } else { (out, [from, to]) };
-        shape.block(paint.shade(0.92), px, py, z);
+    let (thick, top) = (super::metres(LEAF_CM), super::metres(opening.height_cm - 1));
+    shape.block(paint, [0.0, length], [0.0, thick], [0.008, top]);
+    for z in [[0.18, 0.9], [1.02, 1.86]] {
+        shape.block(paint.shade(0.92), [0.14, length - 0.14], [-0.006, thick + 0.006], z);
     }
-    let Leaf::Open { into, .. } = opening.leaf else {
-        return;
-    };
-    let (cx, cy) = house.rooms[into].outline.centre();
-    // The knob is at the end away from the wall, which is the end nearer to the room's middle.
-    let centre = super::metres(if along_x { cx } else { cy });
-    let far = if (long[0] - centre).abs() < (long[1] - centre).abs() { long[0] + 0.07 } else { long[1] - 0.07 };
-    for side in [thin[0] - 0.04, thin[1] + 0.04] {
-        let at = if along_x { Vec3::new(far, side, base + 1.0) } else { Vec3::new(side, far, base + 1.0) };
-        shape.ball(Surface::metal(Colour::Gold), at, 0.032);
+    for side in [-0.04, thick + 0.04] {
+        shape.ball(Surface::metal(Colour::Gold), Vec3::new(length - 0.07, side, 1.0), 0.032);
     }
+    shape
 }
 
 fn front_door(shape: &mut Shape, opening: &Opening, wall: Wall) {

@@ -42,7 +42,7 @@ fn slab(shape: &mut Shape, stairs: &Stairs, (tread, side): (Surface, Surface), l
 /// A handrail on balusters beside each flight, at the middle of the well.
 pub(in super::super) fn railing(stairs: &Stairs) -> Shape {
     let mut shape = Shape::default();
-    let (rail, white) = (Surface::wood(Colour::DarkBrown), Surface::plain([244, 243, 240]));
+    let (rail, white) = (Surface::wood(Colour::Brown), Surface::plain([244, 243, 240]));
     let middle = stairs.width_cm() / 2;
     for lower in [true, false] {
         let towards_low = lower == stairs.lower_flight_low;

@@ -1,0 +1,55 @@
+//! What is built into walls, or fixed to them: closets, shelves with books, radiators.
+
+use super::super::{catalogue::FurnitureKind as K, model::RoomKind, rect::Wall};
+use super::placing::{Furnisher, Piece};
+
+/// Distance between two places along a wall that are tried, centimetres.
+const STEP_CM: i32 = 6;
+
+/// What a room of a kind has, with its width: the widest that fits is taken, once on each wall.
+fn usual(kind: RoomKind) -> &'static [(K, i32)] {
+    match kind {
+        RoomKind::Hallway => &[(K::ClosetDoor, 180), (K::WallBookshelf, 120), (K::ClosetDoor, 120)],
+        RoomKind::Entryway => &[(K::ClosetDoor, 120)],
+        RoomKind::Bedroom => &[(K::ClosetDoor, 200), (K::ClosetDoor, 140)],
+        RoomKind::LivingRoom => &[(K::WallBookshelf, 200), (K::WallBookshelf, 120)],
+        RoomKind::Office | RoomKind::DiningRoom => &[(K::WallBookshelf, 120)],
+        _ => &[],
+    }
+}
+
+/// Builds in what a room usually has, on walls where nothing stands; then radiators.
+pub(super) fn furnish(room: &mut Furnisher<'_>, kind: RoomKind) {
+    let walls = room.shuffled_walls();
+    // A bedroom has one closet, and a living room one wall of books; a hallway has several of both.
+    let most = if kind == RoomKind::Hallway { 4 } else { 1 };
+    let on_walls = walls.iter().flat_map(|wall| usual(kind).iter().map(move |(kind, width)| (*wall, *kind, *width)));
+    let mut built = 0;
+    for (wall, kind, width) in on_walls {
+        if built < most && fix(room, wall, kind, width, 0).is_some() {
+            built += 1;
+        }
+    }
+    let radiators = walls.iter().flat_map(|wall| [120, 90, 60].map(|width| (*wall, width)));
+    let mut left = if room.inner.area_m2() > 12.0 { 2 } else { 1 };
+    for (wall, width) in radiators {
+        if left > 0 && fix(room, wall, K::Radiator, width, 12).is_some() {
+            left -= 1;
+        }
+    }
+}
+
+/// Fixes something to a wall at the first place where nothing is in its way, from the middle outwards.
+fn fix(room: &mut Furnisher<'_>, wall: Wall, kind: K, width: i32, base: i32) -> Option<Piece> {
+    let [_, depth, height] = kind.entry().size_cm;
+    let edge = room.inner.edge(wall);
+    let spare = edge.length() - width;
+    let mut offsets: Vec<i32> = (0..=spare / STEP_CM).map(|step| step * STEP_CM).take_while(|_| spare >= 0).collect();
+    offsets.sort_by_key(|offset| (2 * offset - spare).abs());
+    let place = |offset: i32| room.hang_at(kind, wall, edge.from + offset, base, [width, depth, height]);
+    let piece = offsets.into_iter().find_map(place)?;
+    if kind != K::Radiator {
+        room.finish(piece);
+    }
+    Some(piece)
+}

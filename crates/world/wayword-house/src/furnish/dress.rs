@@ -1,0 +1,135 @@
+//! Hangs pictures, mirrors, cloths and coats on the stretches of wall that furniture leaves bare.
+
+use super::super::{catalogue::FurnitureKind as K, model::RoomKind, rect::Wall};
+use super::placing::Furnisher;
+
+/// Distance between two things that hang side by side, and to a room's corner, centimetres.
+const GAP_CM: i32 = 9;
+/// Width of the strips in which a wall is searched, centimetres.
+const STRIP_CM: i32 = 5;
+/// The narrowest stretch that something is hung on, centimetres.
+const NARROWEST_CM: i32 = 36;
+
+/// Heights between which things hang, centimetres above the floor: over the bare floor, over low furniture, and over
+/// high furniture.
+const BANDS: [Band; 3] = [Band { base: 58, top: 226 }, Band { base: 116, top: 226 }, Band { base: 160, top: 226 }];
+
+#[derive(Debug, Clone, Copy)]
+struct Band {
+    base: i32,
+    top: i32,
+}
+
+/// What may hang in a room of a kind, with how often in a hundred; the shares of a room sum to 100.
+fn usual(kind: RoomKind) -> &'static [(K, i32)] {
+    match kind {
+        RoomKind::Hallway | RoomKind::Entryway | RoomKind::Staircase => {
+            &[(K::Photos, 28), (K::Painting, 34), (K::Tapestry, 14), (K::Mirror, 10), (K::CoatHooks, 14)]
+        }
+        RoomKind::Bathroom => &[(K::Mirror, 25), (K::Towel, 35), (K::Painting, 40)],
+        RoomKind::Closet | RoomKind::LaundryRoom => &[(K::CoatHooks, 45), (K::Painting, 25), (K::Towel, 30)],
+        RoomKind::Garage => &[(K::ToolBoard, 70), (K::BulletinBoard, 30)],
+        RoomKind::Office => &[(K::BulletinBoard, 22), (K::Photos, 28), (K::Painting, 40), (K::Tapestry, 10)],
+        RoomKind::Kitchen => &[(K::Painting, 50), (K::BulletinBoard, 20), (K::Photos, 30)],
+        RoomKind::Bedroom => &[(K::Painting, 40), (K::Photos, 24), (K::Tapestry, 22), (K::Mirror, 14)],
+        RoomKind::LivingRoom | RoomKind::DiningRoom => {
+            &[(K::Painting, 46), (K::Photos, 26), (K::Tapestry, 14), (K::Mirror, 14)]
+        }
+    }
+}
+
+/// Least and most usual width of something that hangs, and its greatest height, centimetres.
+fn measure(kind: K) -> ([i32; 2], i32) {
+    match kind {
+        K::Mirror => ([46, 74], 150),
+        K::Towel => ([44, 64], 110),
+        K::Tapestry => ([80, 130], 166),
+        K::Photos => ([56, 190], 160),
+        K::CoatHooks => ([70, 130], 150),
+        K::ToolBoard => ([90, 180], 130),
+        K::BulletinBoard => ([80, 140], 110),
+        _ => ([48, 150], 150),
+    }
+}
+
+impl Furnisher<'_> {
+    /// Covers what is bare: first from low to high, then over furniture.
+    pub(super) fn dress_walls(&mut self) {
+        for wall in Wall::ALL {
+            for band in BANDS {
+                for (from, to) in self.bare_runs(wall, band) {
+                    self.fill(wall, band, from, to);
+                }
+            }
+        }
+    }
+
+    /// The stretches of a wall on which nothing is between two heights.
+    fn bare_runs(&self, wall: Wall, band: Band) -> Vec<(i32, i32)> {
+        let edge = self.inner.edge(wall);
+        let mut runs: Vec<(i32, i32)> = Vec::new();
+        let (from, to) = (edge.from + GAP_CM, edge.to - GAP_CM);
+        for at in (from..to - STRIP_CM).step_by(STRIP_CM as usize) {
+            let strip = self.at_wall(wall, at, [STRIP_CM, 4, 0]);
+            if !self.wall_is_bare(wall, &strip, band.base, band.top, true) {
+                continue;
+            }
+            match runs.last_mut() {
+                Some((_, end)) if *end == at => *end = at + STRIP_CM,
+                _ => runs.push((at, at + STRIP_CM)),
+            }
+        }
+        runs.retain(|(from, to)| to - from >= NARROWEST_CM);
+        runs
+    }
+
+    /// Hangs things side by side, at equal distances.
+    fn fill(&mut self, wall: Wall, band: Band, from: i32, to: i32) {
+        let mut chosen: Vec<(K, i32)> = Vec::new();
+        let mut left = to - from;
+        while left >= NARROWEST_CM {
+            let last = chosen.last().map(|(kind, _)| *kind);
+            let (kind, width) = self.choose(left, last);
+            left -= width + GAP_CM;
+            chosen.push((kind, width));
+        }
+        let gap = (left + GAP_CM) / (chosen.len() as i32 + 1);
+        let mut at = from + gap;
+        for (kind, width) in chosen {
+            let room = band.top - band.base;
+            let height = measure(kind).1.min(room);
+            // Coats and cloths hang down from the top; what one looks at has its middle at the height of the eyes.
+            let spare = room - height;
+            let base =
+                band.base + if matches!(kind, K::CoatHooks | K::Tapestry | K::Towel) { spare } else { spare / 2 };
+            let depth = kind.entry().size_cm[1];
+            let area = self.at_wall(wall, at, [width, depth, height]);
+            self.put(kind, area, base, height, wall);
+            at += width + GAP_CM + gap.max(0);
+        }
+    }
+
+    /// Something that fits into a width, other than its neighbour, and its own width.
+    fn choose(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
+        let usual = usual(self.room.kind);
+        let fits = |kind: K| measure(kind).0[0] <= left && Some(kind) != neighbour;
+        let total: i32 = usual.iter().filter(|(kind, _)| fits(*kind)).map(|(_, share)| share).sum();
+        let mut drawn = self.dice.between(1, total.max(1));
+        let mut kind = if left < 46 || self.room.kind == RoomKind::Bathroom { K::Towel } else { K::Painting };
+        for (each, share) in usual.iter().filter(|(kind, _)| fits(*kind)) {
+            drawn -= share;
+            if drawn <= 0 {
+                kind = *each;
+                break;
+            }
+        }
+        if total == 0 {
+            kind = K::Painting;
+        }
+        let [least, most] = measure(kind).0;
+        let width = self.dice.stepped(least.min(left), most.min(left), 2);
+        // What would be left is too narrow for anything else.
+        let rest = left - width - GAP_CM;
+        (kind, if rest < NARROWEST_CM && left <= most { left } else { width })
+    }
+}

@@ -1,0 +1,70 @@
+//! The finish of furniture: one for a house, another in some of its rooms, and a few pieces that stand out.
+
+use super::super::{colour::Colour, dice::Dice, model::RoomKind};
+use super::placing::{Furnisher, Piece};
+
+/// Finishes of wood, as people name them.
+const WOOD: [Colour; 10] = [
+    Colour::White,
+    Colour::Wooden,
+    Colour::Brown,
+    Colour::Black,
+    Colour::Grey,
+    Colour::Wooden,
+    Colour::Blue,
+    Colour::Green,
+    Colour::Brown,
+    Colour::Cream,
+];
+/// Finishes of kitchen fronts.
+const FRONTS: [Colour; 8] = [
+    Colour::White,
+    Colour::Grey,
+    Colour::Blue,
+    Colour::Green,
+    Colour::Wooden,
+    Colour::Cream,
+    Colour::Black,
+    Colour::White,
+];
+
+/// The finishes of the furniture in one room.
+#[derive(Debug)]
+pub(super) struct Finishes {
+    /// Of most pieces.
+    pub(super) main: Colour,
+    /// Of the piece that stands out.
+    accent: Colour,
+    dice: Dice,
+}
+
+/// The finish that most rooms of a house share.
+pub(super) fn of_house(dice: &mut Dice) -> Colour {
+    dice.pick(WOOD)
+}
+
+/// The finish of a house's kitchen fronts.
+pub(super) fn of_kitchen(dice: &mut Dice) -> Colour {
+    dice.pick(FRONTS)
+}
+
+impl Finishes {
+    /// Those of a room; its own dice, so that they change nothing else.
+    pub(super) fn of_room(seed: u64, index: usize, kind: RoomKind, house: Colour) -> Self {
+        let mut dice = Dice::new(seed, &["finish", &index.to_string()]);
+        // The rooms where guests are match; bedrooms and offices are furnished one by one.
+        let own = if matches!(kind, RoomKind::Bedroom | RoomKind::Office | RoomKind::Entryway) { 60 } else { 30 };
+        let main = if dice.chance(own) { dice.pick(WOOD) } else { house };
+        let accent = dice.pick(WOOD);
+        Self { main, accent, dice }
+    }
+}
+
+impl Furnisher<'_> {
+    /// Gives a wooden piece the finish of its room, or now and then another one.
+    pub(super) fn finish(&mut self, piece: Piece) {
+        let finishes = &mut self.finishes;
+        let colour = if finishes.dice.chance(30) { finishes.accent } else { finishes.main };
+        self.paint(piece, colour);
+    }
+}

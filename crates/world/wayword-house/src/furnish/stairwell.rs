@@ -1,0 +1,72 @@
+//! The walls of a stairwell: pictures that follow the flights.
+
+use super::super::{
+    catalogue::FurnitureKind as K,
+    model::{STOREY_CM, Stairs},
+    rect::Wall,
+};
+use super::placing::Furnisher;
+
+/// Width of a column of pictures, and the distance to the next, centimetres.
+const COLUMN_CM: i32 = 62;
+const GAP_CM: i32 = 8;
+/// From the steps to the lowest picture, and between two pictures of a column, centimetres.
+const OVER_STEPS_CM: i32 = 55;
+const APART_CM: i32 = 12;
+/// Where the highest picture ends, and the height of each, centimetres.
+const TOP_CM: i32 = STOREY_CM + 240;
+const HEIGHT_CM: i32 = 138;
+/// How many columns in a hundred have pictures.
+const FILLED_PERCENT: i32 = 86;
+/// Over the opening at the foot of the stairs, centimetres.
+const OVER_OPENING_CM: i32 = 236;
+
+/// Hangs columns of pictures on every wall.
+pub(super) fn furnish(room: &mut Furnisher<'_>, stairs: &Stairs) {
+    for wall in Wall::ALL {
+        let edge = room.inner.edge(wall);
+        let count = (edge.length() - GAP_CM) / (COLUMN_CM + GAP_CM);
+        let spare = edge.length() - count * (COLUMN_CM + GAP_CM) + GAP_CM;
+        for column in 0..count {
+            let from = edge.from + spare / 2 + column * (COLUMN_CM + GAP_CM);
+            // Not every column: a stairwell is no gallery.
+            if room.dice.chance(FILLED_PERCENT)
+                && let Some(base) = lowest(room, stairs, wall, from)
+            {
+                hang_column(room, wall, from, base);
+            }
+        }
+    }
+}
+
+/// The height over the floor from which a column may hang.
+fn lowest(room: &Furnisher<'_>, stairs: &Stairs, wall: Wall, from: i32) -> Option<i32> {
+    let area = room.at_wall(wall, from, [COLUMN_CM, 4, 0]);
+    let (x, y) = area.centre();
+    let ends = if wall.along_x() { [(area.x0, y), (x, y), (area.x1, y)] } else { [(x, area.y0), (x, y), (x, area.y1)] };
+    let steps_m = ends.map(|(x, y)| stairs.height_at(f64::from(x) / 100.0, f64::from(y) / 100.0));
+    let steps_cm = (steps_m.into_iter().fold(0.0, f64::max) * 100.0) as i32;
+    if wall != stairs.entry {
+        return Some(steps_cm + OVER_STEPS_CM);
+    }
+    // Over the opening above there is no room; the opening below ends at the lower flight's width.
+    let (low, high) = stairs.flight_across(true);
+    let lower = stairs.across(low, high, [0, 10]);
+    lower.contains(&area).then_some(OVER_OPENING_CM)
+}
+
+fn hang_column(room: &mut Furnisher<'_>, wall: Wall, from: i32, lowest: i32) {
+    let mut base = lowest;
+    while base + HEIGHT_CM / 2 <= TOP_CM {
+        let height = HEIGHT_CM.min(TOP_CM - base);
+        let kind =
+            if height < 110 || room.dice.chance(60) { K::Painting } else { room.dice.pick([K::Photos, K::Tapestry]) };
+        let area = room.at_wall(wall, from, [COLUMN_CM, 4, height]);
+        if room.wall_is_bare(wall, &area, base, base + height, true) {
+            room.put(kind, area, base, height, wall);
+            base += height + APART_CM;
+        } else {
+            base += 20;
+        }
+    }
+}

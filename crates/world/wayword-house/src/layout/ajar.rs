@@ -1,0 +1,45 @@
+//! How far the doors of a house stand open.
+
+use super::super::{
+    dice::Dice,
+    leaf::OpenLeaf,
+    model::{Leaf, Opening, Room},
+};
+use super::openings::swing;
+
+/// Angles between a leaf and its wall that a door may stand at, degrees.
+const ANGLES: [i32; 10] = [66, 72, 78, 84, 88, 90, 94, 100, 106, 112];
+
+/// Turns each open leaf to an angle at which it stays in its room and out of the way of the other doors. The dice have
+/// their own purpose, so that the plan does not depend on them.
+pub(super) fn turn(seed: u64, rooms: &[Room], openings: &mut [Opening]) {
+    let mut dice = Dice::new(seed, &["ajar"]);
+    for index in 0..openings.len() {
+        let Leaf::Open { into, hinge_low, .. } = openings[index].leaf else {
+            continue;
+        };
+        let mut angles = ANGLES;
+        dice.shuffle(&mut angles);
+        let at = |angle_deg: i32| Leaf::Open { into, hinge_low, angle_deg };
+        let fits = |angle: &i32| *angle <= 90 || is_clear(rooms, openings, index, into, at(*angle));
+        if let Some(angle) = angles.into_iter().find(fits) {
+            openings[index].leaf = at(angle);
+        }
+    }
+}
+
+/// Whether a leaf that is turned beyond the right angle touches neither the room's walls nor the floor before another
+/// opening.
+fn is_clear(rooms: &[Room], openings: &[Opening], index: usize, into: usize, leaf: Leaf) -> bool {
+    let turned = Opening { leaf, ..openings[index].clone() };
+    let Some(leaf) = OpenLeaf::of(&turned, rooms) else {
+        return false;
+    };
+    let (inner, squares) = (rooms[into].inner(), leaf.footprint());
+    let others = openings.iter().enumerate().filter(|(other, opening)| {
+        *other != index && (opening.room == into || opening.beyond == Some(into)) && opening.base_cm == turned.base_cm
+    });
+    let steps: Vec<_> = others.filter_map(|(_, other)| swing(&rooms[into].outline, &other.span)).collect();
+    // The squares at the hinge reach into the frame.
+    squares.iter().skip(2).all(|square| inner.contains(square) && !steps.iter().any(|step| step.overlaps(square)))
+}

@@ -1,0 +1,196 @@
+//! What hangs on walls besides paintings and mirrors: photographs, cloths, coats, boards.
+
+use super::{
+    super::{
+        colour::Colour,
+        surface::{ART_COUNT, Pattern, Surface},
+    },
+    Look, Shape,
+};
+use glam::{Vec2, Vec3};
+
+const FRAMES: [Colour; 5] = [Colour::Black, Colour::Wooden, Colour::White, Colour::Brown, Colour::Gold];
+const CLOTHES: [Colour; 8] = [
+    Colour::Red,
+    Colour::Blue,
+    Colour::Beige,
+    Colour::Green,
+    Colour::DarkGrey,
+    Colour::Yellow,
+    Colour::Teal,
+    Colour::Brown,
+];
+
+/// A flat board with its front at `-hd`.
+fn board(shape: &mut Shape, surface: Surface, x: [f32; 2], y: [f32; 2], z: [f32; 2]) {
+    shape.block(surface, x, y, z);
+}
+
+/// A dense wall of framed photographs.
+pub(super) fn photos(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let (hw, hd) = look.half();
+    let rows = if look.h > 1.3 {
+        3
+    } else if look.h > 0.75 {
+        2
+    } else {
+        1
+    };
+    let columns = ((look.w / 0.42) as usize).max(1);
+    let (w, h) = (look.w / columns as f32, look.h / rows as f32);
+    let mats = Surface::plain([250, 249, 244]);
+    for cell in 0..rows * columns {
+        let (column, row) = (cell % columns, cell / columns);
+        let mixed = cell * 7 + look.variant as usize;
+        let frame = Surface::wood(FRAMES[(mixed / 3) % FRAMES.len()]);
+        // Each second frame is a little smaller, as such walls grow over the years.
+        let (inset, bar) = (if mixed.is_multiple_of(2) { 0.012 } else { 0.024 }, 0.022);
+        let (x0, z0) = (-hw + w * column as f32 + inset, h * row as f32 + inset);
+        let (x1, z1) = (x0 + w - 2.0 * inset, z0 + h - 2.0 * inset);
+        board(&mut shape, frame, [x0, x1], [-hd, hd], [z0, z1]);
+        let rim = bar + 0.03;
+        let (corner, u, v) = (Vec3::new(x0 + bar, -hd - 0.002, z0 + bar), x1 - x0 - 2.0 * bar, z1 - z0 - 2.0 * bar);
+        shape.picture(mats, corner, Vec3::X * u, Vec3::Z * v);
+        let corner = Vec3::new(x0 + rim, -hd - 0.004, z0 + rim);
+        let art = Surface::picture(Pattern::Art((mixed % usize::from(ART_COUNT)) as u8)).shade(0.94);
+        shape.picture(art, corner, Vec3::X * (x1 - x0 - 2.0 * rim), Vec3::Z * (z1 - z0 - 2.0 * rim));
+    }
+    shape
+}
+
+/// A patterned cloth with a fringe, on a rod.
+pub(super) fn tapestry(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let (hw, hd) = look.half();
+    let cloth = Surface::new(Pattern::Ornament, look.colour.rgb());
+    let rod = Surface::wood(Colour::Brown);
+    shape.rod(rod, Vec3::new(-hw, 0.0, look.h - 0.02), Vec3::new(hw, 0.0, look.h - 0.02), 0.016);
+    for x in [-hw, hw] {
+        shape.ball(rod, Vec3::new(x, 0.0, look.h - 0.02), 0.024);
+    }
+    let (from, to) = (-hw + 0.03, hw - 0.03);
+    shape.block(Surface::fabric(look.colour).shade(0.8), [from, to], [-hd + 0.012, hd], [0.08, look.h - 0.02]);
+    shape.picture(cloth, Vec3::new(from, -hd, 0.08), Vec3::X * (to - from), Vec3::Z * (look.h - 0.1));
+    let threads = ((to - from) / 0.05) as usize;
+    let fringe = Surface::fabric(Colour::Cream);
+    for thread in 0..threads {
+        let x = from + 0.012 + (to - from) * thread as f32 / threads as f32;
+        let (corner, across) = (Vec3::new(x, -hd + 0.004, 0.0), Vec3::X * 0.026);
+        shape.quad(fringe, corner, across, Vec3::Z * 0.085, Vec2::ZERO, Vec2::new(0.1, 0.3));
+    }
+    shape
+}
+
+/// A board with pegs, full of coats, bags and a hat.
+pub(super) fn coat_hooks(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    let steel = Surface::metal(Colour::DarkGrey);
+    board(&mut shape, wood, [-hw, hw], [hd - 0.03, hd], [look.h - 0.26, look.h - 0.12]);
+    board(&mut shape, wood, [-hw, hw], [-hd, hd], [look.h - 0.1, look.h - 0.07]);
+    let hooks = ((look.w / 0.2) as usize).max(2);
+    let width = look.w / hooks as f32;
+    for hook in 0..hooks {
+        let x = -hw + width * (hook as f32 + 0.5);
+        let peg = Vec3::new(x, hd - 0.03, look.h - 0.18);
+        shape.rod(steel, peg, peg + Vec3::new(0.0, -0.06, 0.02), 0.012);
+        let mixed = hook * 3 + look.variant as usize;
+        let cloth = Surface::fabric(CLOTHES[mixed % CLOTHES.len()]);
+        // Coats reach further down than jackets.
+        let bottom = [0.0, 0.22, 0.1, 0.36][mixed % 4] * look.h;
+        let half = width * 0.48;
+        shape.soft(cloth, [x - half, x + half], [-hd, hd - 0.03], [bottom, look.h - 0.3], 0.045);
+        shape.soft(
+            cloth,
+            [x - half * 0.7, x + half * 0.7],
+            [-hd + 0.01, hd - 0.03],
+            [look.h - 0.34, look.h - 0.19],
+            0.04,
+        );
+        shape.block(
+            cloth.shade(0.7),
+            [x - 0.004, x + 0.004],
+            [-hd - 0.002, -hd + 0.01],
+            [bottom + 0.03, look.h - 0.33],
+        );
+    }
+    let hat = Surface::fabric(CLOTHES[(look.variant as usize + 4) % CLOTHES.len()]);
+    shape.turned(
+        hat,
+        (-hw * 0.5, 0.0),
+        0.5,
+        &[
+            (0.0, look.h - 0.07),
+            (0.15, look.h - 0.07),
+            (0.15, look.h - 0.06),
+            (0.08, look.h - 0.05),
+            (0.07, look.h),
+            (0.0, look.h),
+        ],
+    );
+    shape
+}
+
+/// Cork in a frame, full of notes.
+pub(super) fn bulletin_board(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let (hw, hd) = look.half();
+    board(&mut shape, Surface::wood(Colour::Wooden), [-hw, hw], [-hd, hd], [0.0, look.h]);
+    let cork = Surface::new(Pattern::Carpet, [204, 158, 104]);
+    let corner = Vec3::new(-hw + 0.03, -hd - 0.002, 0.03);
+    shape.quad(cork, corner, Vec3::X * (look.w - 0.06), Vec3::Z * (look.h - 0.06), Vec2::ZERO, Vec2::new(2.0, 2.0));
+    let papers = [[250, 250, 246], [250, 232, 120], [190, 224, 246], [246, 190, 190], [214, 240, 196]];
+    let (columns, rows) = (((look.w / 0.22) as usize).max(2), ((look.h / 0.28) as usize).max(2));
+    for note in 0..columns * rows {
+        let mixed = note * 5 + look.variant as usize;
+        if mixed.is_multiple_of(4) {
+            continue;
+        }
+        let (column, row) = ((note % columns) as f32, (note / columns) as f32);
+        let (w, h) = ((look.w - 0.1) / columns as f32, (look.h - 0.1) / rows as f32);
+        let (x, z) = (-hw + 0.05 + w * column, 0.05 + h * row + 0.02 * (mixed % 3) as f32);
+        let (wide, high) = (w * [0.62, 0.8, 0.7][mixed % 3], h * [0.7, 0.55, 0.8][(mixed / 2) % 3]);
+        let paper = Surface::plain(papers[mixed % papers.len()]);
+        shape.picture(paper, Vec3::new(x, -hd - 0.004, z), Vec3::X * wide, Vec3::Z * high);
+        for line in 0..3 {
+            let z = z + high * (0.3 + 0.2 * line as f32);
+            let text = Surface::plain([110, 112, 118]);
+            shape.picture(text, Vec3::new(x + wide * 0.15, -hd - 0.005, z), Vec3::X * (wide * 0.65), Vec3::Z * 0.008);
+        }
+        let pin = Vec3::new(x + wide / 2.0, -hd - 0.008, z + high - 0.015);
+        shape.ball(Surface::plain([206, 40, 40]), pin, 0.009);
+    }
+    shape
+}
+
+/// A pegboard with a saw, hammers, spanners and a coil of hose.
+pub(super) fn tool_board(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let (hw, hd) = look.half();
+    board(&mut shape, Surface::wood(Colour::LightBrown), [-hw, hw], [-hd + 0.02, hd], [0.0, look.h]);
+    let (steel, wood) = (Surface::metal(Colour::Grey), Surface::wood(Colour::Brown));
+    let grips = [Surface::plain([200, 44, 36]), Surface::plain([236, 178, 40]), Surface::plain([40, 90, 170])];
+    let places = ((look.w / 0.2) as usize).max(3);
+    for place in 0..places {
+        let x = -hw + look.w * (place as f32 + 0.5) / places as f32;
+        let y = [-hd, -hd + 0.02];
+        let mixed = place + look.variant as usize;
+        let (high, low) = (look.h * 0.62, look.h * 0.12);
+        if mixed.is_multiple_of(2) {
+            board(&mut shape, wood, [x - 0.016, x + 0.016], y, [high, high + 0.28]);
+            board(&mut shape, steel, [x - 0.07, x + 0.07], y, [high + 0.26, high + 0.32]);
+        } else {
+            board(&mut shape, grips[mixed % 3], [x - 0.02, x + 0.02], y, [high, high + 0.12]);
+            board(&mut shape, steel, [x - 0.01, x + 0.01], y, [high + 0.12, high + 0.32]);
+        }
+        if mixed.is_multiple_of(3) {
+            let centre = Vec3::new(x, -hd, low + 0.16);
+            shape.hoop(Surface::plain([50, 120, 70]), centre, Vec3::Y, 0.08, 0.02);
+        } else {
+            board(&mut shape, steel, [x - 0.025, x + 0.025], y, [low, low + 0.26]);
+            board(&mut shape, grips[(mixed + 1) % 3], [x - 0.04, x + 0.04], y, [low + 0.24, low + 0.36]);
+        }
+    }
+    shape
+}
