@@ -11,16 +11,25 @@ use std::collections::BTreeMap;
 pub(in super::super) type Factors = [f32; 3];
 
 /// The light may differ by this much from what the ends of an edge tell.
-const TOLERANCE: f32 = 0.04;
+const TOLERANCE: f32 = 0.045;
 /// Edges longer than this are tried at three places instead of one, metres.
 const LONG_M: f32 = 0.45;
 /// How often a triangle is cut at most; this only bounds the work.
 const DEEPEST: u32 = 12;
 
-/// Cuts the triangles of a part down to about `finest_m`, and gives the light of each corner.
-pub(in super::super) fn cut(part: &mut Part, finest_m: f32, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
+/// How finely surfaces are cut, metres.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Grain {
+    /// Where the light changes, down to about this length.
+    pub(in super::super) finest_m: f32,
+    /// No edge stays longer than this. A shadow in the middle of a wider piece would not be found.
+    pub(in super::super) widest_m: f32,
+}
+
+/// Cuts the triangles of a part where the light changes, and gives the light of each corner.
+pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
     let colours = part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect();
-    let mut cutter = Cutter { part, colours, finest_m, light, middles: BTreeMap::new() };
+    let mut cutter = Cutter { part, colours, grain, light, middles: BTreeMap::new() };
     let mut waiting: Vec<_> = std::mem::take(&mut cutter.part.triangles).into_iter().map(|each| (each, 0)).collect();
     waiting.reverse();
     while let Some((triangle, depth)) = waiting.pop() {
@@ -36,7 +45,7 @@ pub(in super::super) fn cut(part: &mut Part, finest_m: f32, light: impl Fn(Vec3,
 struct Cutter<'a, L> {
     part: &'a mut Part,
     colours: Vec<Factors>,
-    finest_m: f32,
+    grain: Grain,
     light: L,
     /// The new corner in the middle of an edge; `None` where the edge stays whole.
     middles: BTreeMap<(u32, u32), Option<u32>>,
@@ -69,11 +78,11 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
     /// The two ends may lie in either order, so everything here is the same both ways.
     fn cut_edge(&mut self, a: usize, b: usize) -> Option<u32> {
         let length = (self.part.positions[a] - self.part.positions[b]).length();
-        if length < 1.5 * self.finest_m {
+        if length < 1.5 * self.grain.finest_m {
             return None;
         }
         let (at, normal, colour) = self.between(a, b, 0.5);
-        let mut uneven = self.strays(a, b, 0.5, colour);
+        let mut uneven = length > self.grain.widest_m || self.strays(a, b, 0.5, colour);
         if !uneven && length > LONG_M {
             uneven = [0.25, 0.75].into_iter().any(|share| {
                 let (_, _, colour) = self.between(a, b, share);

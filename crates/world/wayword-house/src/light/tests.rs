@@ -30,7 +30,8 @@ fn things_shade_the_floor_under_them() {
     assert!(shaded < 0.8 * empty(&house, table.room).on_shell(under, Vec3::Z)[1]);
 }
 
-/// Where the sun through the middle of a pane's lower left part, and through the bar above it, falls onto the floor.
+/// Where the sun through a place of a window falls onto the floor. The place is given by shares of the window's width and
+/// height; a share outside 0..1 lies beside the window.
 fn on_floor(window: &Window, share_along: f32, share_up: f32, sun: Vec3, floor: f32) -> Vec3 {
     let span = window.span;
     let along = metres(span.from) + metres(span.length()) * share_along;
