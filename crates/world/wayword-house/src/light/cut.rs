@@ -5,13 +5,17 @@
 
 use super::super::shapes::Part;
 use glam::Vec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Light at a place with a normal, as factors.
 pub(in super::super) type Factors = [f32; 3];
 
 /// The light may differ by this much from what the ends of an edge tell.
 const TOLERANCE: f32 = 0.045;
+/// Texture coordinates nearer than this are the same.
+const SAME_TEXEL: f32 = 1e-4;
+/// Where the light differs by this much, as at the edge of a sun patch, pieces are half as long.
+const SHARP: f32 = 0.12;
 /// Edges longer than this are tried at three places instead of one, metres.
 const LONG_M: f32 = 0.45;
 /// How often a triangle is cut at most; this only bounds the work.
@@ -28,6 +32,7 @@ pub(in super::super) struct Grain {
 
 /// Cuts the triangles of a part where the light changes, and gives the light of each corner.
 pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
+    weld(part);
     let colours = part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect();
     let mut cutter = Cutter { part, colours, grain, light, middles: BTreeMap::new() };
     let mut waiting: Vec<_> = std::mem::take(&mut cutter.part.triangles).into_iter().map(|each| (each, 0)).collect();
@@ -40,6 +45,29 @@ pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, 
         }
     }
     cutter.colours
+}
+
+/// Makes corners with the same place, normal and part of the texture one: their light is then computed once.
+fn weld(part: &mut Part) {
+    let Part { positions, normals, uvs, triangles, .. } = part;
+    let mut first: HashMap<[u32; 6], usize> = HashMap::with_capacity(positions.len());
+    let mut kept = 0;
+    let mut moved = Vec::with_capacity(positions.len());
+    for at in 0..positions.len() {
+        // Adding zero makes one number of the two zeros.
+        let [p, n] = [positions[at] + Vec3::ZERO, normals[at] + Vec3::ZERO].map(|v| v.to_array().map(f32::to_bits));
+        let other = *first.entry([p[0], p[1], p[2], n[0], n[1], n[2]]).or_insert(kept);
+        let same = other < kept && uvs[other].distance_squared(uvs[at]) < SAME_TEXEL * SAME_TEXEL;
+        moved.push(if same { other } else { kept } as u32);
+        if !same {
+            (positions[kept], normals[kept], uvs[kept]) = (positions[at], normals[at], uvs[at]);
+            kept += 1;
+        }
+    }
+    positions.truncate(kept);
+    normals.truncate(kept);
+    uvs.truncate(kept);
+    triangles.iter_mut().flatten().for_each(|corner| *corner = moved[*corner as usize]);
 }
 
 struct Cutter<'a, L> {
@@ -78,17 +106,19 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
     /// The two ends may lie in either order, so everything here is the same both ways.
     fn cut_edge(&mut self, a: usize, b: usize) -> Option<u32> {
         let length = (self.part.positions[a] - self.part.positions[b]).length();
-        if length < 1.5 * self.grain.finest_m {
+        let (finest, widest) = (self.grain.finest_m, self.grain.widest_m);
+        if length < 0.75 * finest || (length < 1.5 * finest && self.apart(a, b) < SHARP) {
             return None;
         }
         let (at, normal, colour) = self.between(a, b, 0.5);
-        let mut uneven = length > self.grain.widest_m || self.strays(a, b, 0.5, colour);
-        if !uneven && length > LONG_M {
-            uneven = [0.25, 0.75].into_iter().any(|share| {
-                let (_, _, colour) = self.between(a, b, share);
-                self.strays(a, b, share, colour)
-            });
-        }
+        let strays = self.strays(a, b, 0.5, colour);
+        let uneven = length > widest || strays > if length < 1.5 * finest { SHARP } else { TOLERANCE };
+        let uneven = uneven
+            || length > LONG_M
+                && [0.25, 0.75].into_iter().any(|share| {
+                    let (_, _, colour) = self.between(a, b, share);
+                    self.strays(a, b, share, colour) > TOLERANCE
+                });
         uneven.then(|| {
             let uv = (self.part.uvs[a] + self.part.uvs[b]) * 0.5;
             self.part.positions.push(at);
@@ -99,14 +129,20 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
         })
     }
 
+    /// How much the light at two corners differs.
+    fn apart(&self, a: usize, b: usize) -> f32 {
+        (0..3).map(|channel| (self.colours[a][channel] - self.colours[b][channel]).abs()).fold(0.0, f32::max)
+    }
+
     fn between(&self, a: usize, b: usize, share: f32) -> (Vec3, Vec3, Factors) {
         let at = self.part.positions[a] * (1.0 - share) + self.part.positions[b] * share;
         let normal = (self.part.normals[a] * (1.0 - share) + self.part.normals[b] * share).normalize_or_zero();
         (at, normal, (self.light)(at, normal))
     }
 
-    fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> bool {
+    /// How much the light at a place of an edge differs from what its ends tell.
+    fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> f32 {
         let told = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
-        (0..3).any(|channel| (colour[channel] - told(channel)).abs() > TOLERANCE)
+        (0..3).map(|channel| (colour[channel] - told(channel)).abs()).fold(0.0, f32::max)
     }
 }
