@@ -146,3 +146,61 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
         (0..3).map(|channel| (colour[channel] - told(channel)).abs()).fold(0.0, f32::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{shapes::Shape, surface::Surface};
+    use super::*;
+    use glam::Vec2;
+
+    /// A square of 2 m in four pieces, with light on one side of a slanting line.
+    fn half_lit() -> (Part, Vec<Factors>) {
+        let mut shape = Shape::default();
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            let uv = Vec2::new(x, -y);
+            shape.quad(Surface::plain([255; 3]), Vec3::new(x, y, 0.0), Vec3::X, Vec3::Y, uv - Vec2::Y, uv + Vec2::X);
+        }
+        let mut part = shape.parts.remove(0);
+        let light = |at: Vec3, _: Vec3| if at.x + 0.6 * at.y < 1.3 { [1.0; 3] } else { [0.2; 3] };
+        let colours = cut(&mut part, Grain { finest_m: 0.1, widest_m: 0.5 }, light);
+        (part, colours)
+    }
+
+    #[test]
+    fn no_crack_opens_between_pieces() {
+        let (part, _) = half_lit();
+        let mut shared: BTreeMap<[[u32; 2]; 2], usize> = BTreeMap::new();
+        for [a, b, c] in &part.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let mut ends =
+                    [from, to].map(|at| part.positions[*at as usize].truncate().to_array().map(f32::to_bits));
+                ends.sort_unstable();
+                *shared.entry(ends).or_default() += 1;
+            }
+        }
+        let is_rim = |ends: &[[u32; 2]; 2]| {
+            let at = ends.map(|end| end.map(f32::from_bits));
+            (0..2).any(|axis| [0.0, 2.0].iter().any(|rim| at[0][axis] == *rim && at[1][axis] == *rim))
+        };
+        for (ends, count) in &shared {
+            assert_eq!(*count, if is_rim(ends) { 1 } else { 2 }, "{:?}", ends.map(|end| end.map(f32::from_bits)));
+        }
+    }
+
+    #[test]
+    fn pieces_are_small_only_where_the_light_changes() {
+        let (part, colours) = half_lit();
+        assert_eq!(colours.len(), part.positions.len());
+        let is_mixed = |triangle: &&[u32; 3]| {
+            let lit = triangle.iter().filter(|at| colours[**at as usize][0] > 0.5).count();
+            lit == 1 || lit == 2
+        };
+        let longest = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|at| part.positions[at as usize]);
+            a.distance(b).max(b.distance(c)).max(c.distance(a))
+        };
+        let mixed = part.triangles.iter().filter(is_mixed).map(longest).fold(0.0, f32::max);
+        assert!(mixed > 0.0 && mixed < 0.15, "{mixed} m across the edge of the light");
+        assert!(part.triangles.iter().map(longest).fold(0.0, f32::max) > 0.3);
+    }
+}

@@ -50,8 +50,8 @@ pub(super) struct RoomLight {
 struct Daylight {
     middle: Vec3,
     inward: Vec3,
-    /// Four places on the pane, from which light is taken to come.
-    places: [Vec3; 4],
+    /// Three places on the pane, from which light is taken to come.
+    places: [Vec3; 3],
     area_m2: f32,
 }
 
@@ -71,7 +71,7 @@ impl Daylight {
         Self {
             middle: place(50, 50),
             inward: Vec3::new(dx as f32, dy as f32, 0.0),
-            places: [place(20, 30), place(80, 30), place(35, 75), place(65, 75)],
+            places: [place(20, 30), place(80, 30), place(50, 75)],
             area_m2: metres(span.length()) * metres(z[1] - z[0]),
         }
     }
@@ -152,7 +152,7 @@ impl RoomLight {
             return full;
         }
         let held = window.places.map(|place| blocked(&self.blocks, own, at, place - at, SOFT_M));
-        full * (1.0 - 0.9 * held.iter().sum::<f32>() / 4.0)
+        full * (1.0 - 0.9 * held.iter().sum::<f32>() / 3.0)
     }
 
     fn lamplight(&self, at: Vec3, normal: Vec3, own: Option<u32>, lamp: Vec3) -> f32 {
