@@ -30,15 +30,19 @@ pub(super) struct Drawing {
     pub(super) textures: Vec<Texture>,
 }
 
-/// The surfaces of everything in a house, world frame, metres.
+/// The surfaces of everything in a house, world frame, metres. They are not cut where the light changes, so they are
+/// fewer than in a picture.
 #[must_use]
 pub fn surfaces(house: &House) -> Vec<Mesh> {
-    draw(house).meshes
+    collect(house, Collector::default()).meshes
 }
 
-/// Collects the meshes of everything in a house.
+/// Collects the meshes of everything in a house, cut where the light changes.
 pub(super) fn draw(house: &House) -> Drawing {
-    let mut drawing = Collector::default();
+    collect(house, Collector { cuts: true, ..Collector::default() })
+}
+
+fn collect(house: &House, mut drawing: Collector) -> Drawing {
     let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::of(house, index)).collect();
     for (index, light) in lights.iter().enumerate() {
         let shell = [structure::floor(house, index), structure::walls(house, index), structure::ceiling(house, index)];
@@ -105,6 +109,8 @@ fn standing(piece: &Furniture) -> Shape {
 
 #[derive(Default)]
 struct Collector {
+    /// Whether surfaces are cut where the light changes.
+    cuts: bool,
     meshes: Vec<Mesh>,
     materials: Vec<Material>,
     /// The pattern of each texture that some material uses, in order of first use.
@@ -115,8 +121,13 @@ struct Collector {
 impl Collector {
     fn add(&mut self, shape: Shape, id: u32, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) {
         for mut part in shape.parts {
-            let glowing = part.surface.glows.then(|| vec![[1.0; 3]; part.positions.len()]);
-            let colours = glowing.unwrap_or_else(|| cut(&mut part, grain, &light));
+            let colours = if part.surface.glows {
+                vec![[1.0; 3]; part.positions.len()]
+            } else if self.cuts {
+                cut(&mut part, grain, &light)
+            } else {
+                part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect()
+            };
             let Part { surface, positions, uvs, triangles, .. } = part;
             let material = self.material(surface);
             self.meshes.push(Mesh { positions, uvs, colours, triangles, material, id });
