@@ -1,7 +1,7 @@
 //! A house as meshes with materials, textures and baked light.
 
 use super::{
-    light::{Factors, RoomLight, cut},
+    light::{Factors, Grain, RoomLight, cut},
     model::{Furniture, House},
     objects::shell_id,
     outlook::outlooks,
@@ -14,10 +14,14 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
 
-/// Floors and walls are cut down to about this length where their light changes, metres.
-const SHELL_M: f32 = 0.055;
-/// The same for everything else, metres.
-const THING_M: f32 = 0.12;
+/// Floors and walls show the shadows.
+const SHELL: Grain = Grain { finest_m: 0.055, widest_m: 0.7 };
+/// So do rugs and mats, which lie on floors.
+const FLAT: Grain = Grain { finest_m: 0.055, widest_m: 0.25 };
+/// Everything else.
+const THING: Grain = Grain { finest_m: 0.13, widest_m: 0.7 };
+/// How far a door's frame reaches to both sides of the wall's middle, metres.
+const FRAME_M: f32 = 0.08;
 
 /// Everything that a renderer or a file format needs.
 pub(super) struct Drawing {
@@ -26,20 +30,24 @@ pub(super) struct Drawing {
     pub(super) textures: Vec<Texture>,
 }
 
-/// The surfaces of everything in a house, world frame, metres.
+/// The surfaces of everything in a house, world frame, metres. They are not cut where the light changes, so they are
+/// fewer than in a picture.
 #[must_use]
 pub fn surfaces(house: &House) -> Vec<Mesh> {
-    draw(house).meshes
+    collect(house, Collector::default()).meshes
 }
 
-/// Collects the meshes of everything in a house.
+/// Collects the meshes of everything in a house, cut where the light changes.
 pub(super) fn draw(house: &House) -> Drawing {
-    let mut drawing = Collector::default();
+    collect(house, Collector { cuts: true, ..Collector::default() })
+}
+
+fn collect(house: &House, mut drawing: Collector) -> Drawing {
     let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::of(house, index)).collect();
     for (index, light) in lights.iter().enumerate() {
         let shell = [structure::floor(house, index), structure::walls(house, index), structure::ceiling(house, index)];
         for (part, shape) in shell.into_iter().enumerate() {
-            drawing.add(shape, shell_id(house, index, part), SHELL_M, |at, normal| light.on_shell(at, normal));
+            drawing.add(shape, shell_id(house, index, part), SHELL, |at, normal| light.on_shell(at, normal));
         }
     }
     for opening in &house.openings {
@@ -48,27 +56,35 @@ pub(super) fn draw(house: &House) -> Drawing {
         let line = opening.span.at as f32 / 100.0;
         let (cx, cy) = house.rooms[opening.room].outline.centre();
         let is_below = (if along_x { cy } else { cx }) as f32 / 100.0 < line;
-        drawing.add(structure::opening(house, opening), opening.id, THING_M, |at, normal| {
-            let below = (if along_x { at.y } else { at.x }) < line;
-            lights[if below == is_below { opening.room } else { beyond }].on_thing(at, normal, None)
+        drawing.add(structure::opening(house, opening), opening.id, THING, |at, normal| {
+            // Across the wall, the light of one room passes into that of the other.
+            let past = ((if along_x { at.y } else { at.x }) - line) / (2.0 * FRAME_M) + 0.5;
+            let share = if is_below { past } else { 1.0 - past }.clamp(0.0, 1.0);
+            let here = lights[opening.room].on_thing(at, normal, None);
+            if share <= 0.0 {
+                return here;
+            }
+            let there = lights[beyond].on_thing(at, normal, None);
+            std::array::from_fn(|channel| here[channel] * (1.0 - share) + there[channel] * share)
         });
     }
     let outlooks = outlooks(house);
     for window in &house.windows {
         let light = &lights[window.room];
-        drawing.add(structure::window(house, window, &outlooks), window.id, THING_M, |at, normal| {
+        drawing.add(structure::window(house, window, &outlooks), window.id, THING, |at, normal| {
             light.on_thing(at, normal, None)
         });
     }
     if let Some(stairs) = &house.stairs {
         let light = &lights[stairs.room];
-        drawing.add(structure::steps(stairs), stairs.id, THING_M, |at, normal| light.on_thing(at, normal, None));
+        drawing.add(structure::steps(stairs), stairs.id, THING, |at, normal| light.on_thing(at, normal, None));
         drawing
-            .add(structure::railing(stairs), stairs.railing_id, THING_M, |at, normal| light.on_thing(at, normal, None));
+            .add(structure::railing(stairs), stairs.railing_id, THING, |at, normal| light.on_thing(at, normal, None));
     }
     for piece in &house.furniture {
         let light = &lights[piece.room];
-        drawing.add(standing(piece), piece.id, THING_M, |at, normal| light.on_thing(at, normal, Some(piece.id)));
+        let grain = if piece.kind.is_flat() { FLAT } else { THING };
+        drawing.add(standing(piece), piece.id, grain, |at, normal| light.on_thing(at, normal, Some(piece.id)));
     }
     drawing.finish()
 }
@@ -93,6 +109,8 @@ fn standing(piece: &Furniture) -> Shape {
 
 #[derive(Default)]
 struct Collector {
+    /// Whether surfaces are cut where the light changes.
+    cuts: bool,
     meshes: Vec<Mesh>,
     materials: Vec<Material>,
     /// The pattern of each texture that some material uses, in order of first use.
@@ -101,10 +119,15 @@ struct Collector {
 }
 
 impl Collector {
-    fn add(&mut self, shape: Shape, id: u32, finest_m: f32, light: impl Fn(Vec3, Vec3) -> Factors) {
+    fn add(&mut self, shape: Shape, id: u32, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) {
         for mut part in shape.parts {
-            let glowing = part.surface.glows.then(|| vec![[1.0; 3]; part.positions.len()]);
-            let colours = glowing.unwrap_or_else(|| cut(&mut part, finest_m, &light));
+            let colours = if part.surface.glows {
+                vec![[1.0; 3]; part.positions.len()]
+            } else if self.cuts {
+                cut(&mut part, grain, &light)
+            } else {
+                part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect()
+            };
             let Part { surface, positions, uvs, triangles, .. } = part;
             let material = self.material(surface);
             self.meshes.push(Mesh { positions, uvs, colours, triangles, material, id });

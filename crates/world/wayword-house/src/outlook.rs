@@ -46,9 +46,9 @@ fn front(house: &House) -> Option<Wall> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::generate;
+    use super::super::{generate, structure, surface::Pattern};
     use super::*;
-    use std::collections::BTreeSet;
+    use std::collections::{BTreeMap, BTreeSet};
 
     #[test]
     fn the_four_sides_differ_and_the_front_door_leads_to_the_street() {
@@ -65,5 +65,28 @@ mod tests {
     fn houses_differ() {
         let all: BTreeSet<_> = (0..20).map(|seed| outlooks(&generate(seed))).collect();
         assert!(all.len() > 12, "{all:?}");
+    }
+
+    #[test]
+    fn windows_on_two_sides_show_two_views_and_upstairs_shows_them_from_above() {
+        let shows = |pattern: Pattern| matches!(pattern, Pattern::Outside(_) | Pattern::FromAbove(_));
+        let mut from_above = 0;
+        for seed in 0..6 {
+            let house = generate(seed);
+            let sides = outlooks(&house);
+            let mut seen: BTreeMap<(bool, u8), Pattern> = BTreeMap::new();
+            for window in &house.windows {
+                let wall = house.rooms[window.room].outline.wall_of(&window.span).unwrap();
+                let parts = structure::window(&house, window, &sides).parts;
+                let view = parts.iter().map(|part| part.surface.pattern).find(|pattern| shows(*pattern)).unwrap();
+                let is_high = matches!(view, Pattern::FromAbove(_));
+                assert_eq!(*seen.entry((is_high, wall.quarter_turns())).or_insert(view), view, "house {seed}");
+                assert!(!is_high || house.storeys == 2, "house {seed}");
+                from_above += usize::from(is_high);
+            }
+            let different: BTreeSet<_> = seen.values().collect();
+            assert!(different.len() == seen.len() && seen.len() > 1, "house {seed}: {seen:?}");
+        }
+        assert!(from_above > 0);
     }
 }

@@ -13,7 +13,7 @@ use wayword_core::{
 };
 use wayword_render::flat;
 
-/// How many houses are kept in memory; each takes about 15 MB.
+/// How many houses are kept in memory; each takes about 20 MB.
 const READY: usize = 6;
 
 /// Homes from seeds: scene `house2-7` is the home of seed 7.

@@ -96,7 +96,10 @@ pub(super) fn blocked(blocks: &[Block], own: Option<u32>, from: Vec3, way: Vec3,
     let length = way.length();
     let per_step = way.recip();
     let mut passes = 1.0;
-    for block in blocks.iter().filter(|block| own != Some(block.owner)) {
+    let (low, high) = (from.min(from + way), from.max(from + way));
+    let may_hold =
+        |block: &&Block| low.cmplt(block.high).all() && high.cmpgt(block.low).all() && own != Some(block.owner);
+    for block in blocks.iter().filter(may_hold) {
         let (a, b) = ((block.low - from) * per_step, (block.high - from) * per_step);
         let enters = a.min(b).max_element().max(0.0);
         let leaves = a.max(b).min_element().min(1.0);

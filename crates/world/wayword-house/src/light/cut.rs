@@ -5,22 +5,36 @@
 
 use super::super::shapes::Part;
 use glam::Vec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Light at a place with a normal, as factors.
 pub(in super::super) type Factors = [f32; 3];
 
 /// The light may differ by this much from what the ends of an edge tell.
-const TOLERANCE: f32 = 0.04;
+const TOLERANCE: f32 = 0.045;
+/// Texture coordinates nearer than this are the same.
+const SAME_TEXEL: f32 = 1e-4;
+/// Where the light differs by this much, as at the edge of a sun patch, pieces are half as long.
+const SHARP: f32 = 0.12;
 /// Edges longer than this are tried at three places instead of one, metres.
 const LONG_M: f32 = 0.45;
 /// How often a triangle is cut at most; this only bounds the work.
 const DEEPEST: u32 = 12;
 
-/// Cuts the triangles of a part down to about `finest_m`, and gives the light of each corner.
-pub(in super::super) fn cut(part: &mut Part, finest_m: f32, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
+/// How finely surfaces are cut, metres.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Grain {
+    /// Where the light changes, down to about this length.
+    pub(in super::super) finest_m: f32,
+    /// No edge stays longer than this. A shadow in the middle of a wider piece would not be found.
+    pub(in super::super) widest_m: f32,
+}
+
+/// Cuts the triangles of a part where the light changes, and gives the light of each corner.
+pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, Vec3) -> Factors) -> Vec<Factors> {
+    weld(part);
     let colours = part.positions.iter().zip(&part.normals).map(|(at, normal)| light(*at, *normal)).collect();
-    let mut cutter = Cutter { part, colours, finest_m, light, middles: BTreeMap::new() };
+    let mut cutter = Cutter { part, colours, grain, light, middles: BTreeMap::new() };
     let mut waiting: Vec<_> = std::mem::take(&mut cutter.part.triangles).into_iter().map(|each| (each, 0)).collect();
     waiting.reverse();
     while let Some((triangle, depth)) = waiting.pop() {
@@ -33,10 +47,33 @@ pub(in super::super) fn cut(part: &mut Part, finest_m: f32, light: impl Fn(Vec3,
     cutter.colours
 }
 
+/// Makes corners with the same place, normal and part of the texture one: their light is then computed once.
+fn weld(part: &mut Part) {
+    let Part { positions, normals, uvs, triangles, .. } = part;
+    let mut first: HashMap<[u32; 6], usize> = HashMap::with_capacity(positions.len());
+    let mut kept = 0;
+    let mut moved = Vec::with_capacity(positions.len());
+    for at in 0..positions.len() {
+        // Adding zero makes one number of the two zeros.
+        let [p, n] = [positions[at] + Vec3::ZERO, normals[at] + Vec3::ZERO].map(|v| v.to_array().map(f32::to_bits));
+        let other = *first.entry([p[0], p[1], p[2], n[0], n[1], n[2]]).or_insert(kept);
+        let same = other < kept && uvs[other].distance_squared(uvs[at]) < SAME_TEXEL * SAME_TEXEL;
+        moved.push(if same { other } else { kept } as u32);
+        if !same {
+            (positions[kept], normals[kept], uvs[kept]) = (positions[at], normals[at], uvs[at]);
+            kept += 1;
+        }
+    }
+    positions.truncate(kept);
+    normals.truncate(kept);
+    uvs.truncate(kept);
+    triangles.iter_mut().flatten().for_each(|corner| *corner = moved[*corner as usize]);
+}
+
 struct Cutter<'a, L> {
     part: &'a mut Part,
     colours: Vec<Factors>,
-    finest_m: f32,
+    grain: Grain,
     light: L,
     /// The new corner in the middle of an edge; `None` where the edge stays whole.
     middles: BTreeMap<(u32, u32), Option<u32>>,
@@ -69,17 +106,19 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
     /// The two ends may lie in either order, so everything here is the same both ways.
     fn cut_edge(&mut self, a: usize, b: usize) -> Option<u32> {
         let length = (self.part.positions[a] - self.part.positions[b]).length();
-        if length < 1.5 * self.finest_m {
+        let (finest, widest) = (self.grain.finest_m, self.grain.widest_m);
+        if length < 0.75 * finest || (length < 1.5 * finest && self.apart(a, b) < SHARP) {
             return None;
         }
         let (at, normal, colour) = self.between(a, b, 0.5);
-        let mut uneven = self.strays(a, b, 0.5, colour);
-        if !uneven && length > LONG_M {
-            uneven = [0.25, 0.75].into_iter().any(|share| {
-                let (_, _, colour) = self.between(a, b, share);
-                self.strays(a, b, share, colour)
-            });
-        }
+        let strays = self.strays(a, b, 0.5, colour);
+        let uneven = length > widest || strays > if length < 1.5 * finest { SHARP } else { TOLERANCE };
+        let uneven = uneven
+            || length > LONG_M
+                && [0.25, 0.75].into_iter().any(|share| {
+                    let (_, _, colour) = self.between(a, b, share);
+                    self.strays(a, b, share, colour) > TOLERANCE
+                });
         uneven.then(|| {
             let uv = (self.part.uvs[a] + self.part.uvs[b]) * 0.5;
             self.part.positions.push(at);
@@ -90,14 +129,78 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
         })
     }
 
+    /// How much the light at two corners differs.
+    fn apart(&self, a: usize, b: usize) -> f32 {
+        (0..3).map(|channel| (self.colours[a][channel] - self.colours[b][channel]).abs()).fold(0.0, f32::max)
+    }
+
     fn between(&self, a: usize, b: usize, share: f32) -> (Vec3, Vec3, Factors) {
         let at = self.part.positions[a] * (1.0 - share) + self.part.positions[b] * share;
         let normal = (self.part.normals[a] * (1.0 - share) + self.part.normals[b] * share).normalize_or_zero();
         (at, normal, (self.light)(at, normal))
     }
 
-    fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> bool {
+    /// How much the light at a place of an edge differs from what its ends tell.
+    fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> f32 {
         let told = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
-        (0..3).any(|channel| (colour[channel] - told(channel)).abs() > TOLERANCE)
+        (0..3).map(|channel| (colour[channel] - told(channel)).abs()).fold(0.0, f32::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{shapes::Shape, surface::Surface};
+    use super::*;
+    use glam::Vec2;
+
+    /// A square of 2 m in four pieces, with light on one side of a slanting line.
+    fn half_lit() -> (Part, Vec<Factors>) {
+        let mut shape = Shape::default();
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            let uv = Vec2::new(x, -y);
+            shape.quad(Surface::plain([255; 3]), Vec3::new(x, y, 0.0), Vec3::X, Vec3::Y, uv - Vec2::Y, uv + Vec2::X);
+        }
+        let mut part = shape.parts.remove(0);
+        let light = |at: Vec3, _: Vec3| if at.x + 0.6 * at.y < 1.3 { [1.0; 3] } else { [0.2; 3] };
+        let colours = cut(&mut part, Grain { finest_m: 0.1, widest_m: 0.5 }, light);
+        (part, colours)
+    }
+
+    #[test]
+    fn no_crack_opens_between_pieces() {
+        let (part, _) = half_lit();
+        let mut shared: BTreeMap<[[u32; 2]; 2], usize> = BTreeMap::new();
+        for [a, b, c] in &part.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let mut ends =
+                    [from, to].map(|at| part.positions[*at as usize].truncate().to_array().map(f32::to_bits));
+                ends.sort_unstable();
+                *shared.entry(ends).or_default() += 1;
+            }
+        }
+        let is_rim = |ends: &[[u32; 2]; 2]| {
+            let at = ends.map(|end| end.map(f32::from_bits));
+            (0..2).any(|axis| [0.0, 2.0].iter().any(|rim| at[0][axis] == *rim && at[1][axis] == *rim))
+        };
+        for (ends, count) in &shared {
+            assert_eq!(*count, if is_rim(ends) { 1 } else { 2 }, "{:?}", ends.map(|end| end.map(f32::from_bits)));
+        }
+    }
+
+    #[test]
+    fn pieces_are_small_only_where_the_light_changes() {
+        let (part, colours) = half_lit();
+        assert_eq!(colours.len(), part.positions.len());
+        let is_mixed = |triangle: &&[u32; 3]| {
+            let lit = triangle.iter().filter(|at| colours[**at as usize][0] > 0.5).count();
+            lit == 1 || lit == 2
+        };
+        let longest = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|at| part.positions[at as usize]);
+            a.distance(b).max(b.distance(c)).max(c.distance(a))
+        };
+        let mixed = part.triangles.iter().filter(is_mixed).map(longest).fold(0.0, f32::max);
+        assert!(mixed > 0.0 && mixed < 0.15, "{mixed} m across the edge of the light");
+        assert!(part.triangles.iter().map(longest).fold(0.0, f32::max) > 0.3);
     }
 }

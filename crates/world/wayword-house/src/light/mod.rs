@@ -9,7 +9,7 @@ mod sun;
 
 use super::model::{House, Room, Window};
 use casters::{Block, blocked, blocks};
-pub(super) use cut::{Factors, cut};
+pub(super) use cut::{Factors, Grain, cut};
 use glam::Vec3;
 use sun::{Aperture, is_free, towards_sun, wings};
 
@@ -20,7 +20,11 @@ const EDGE_M: f32 = 0.55;
 /// How far the dark rim around a piece of furniture reaches, metres.
 const CONTACT_M: f32 = 0.25;
 /// The sun where it falls straight onto a surface.
-const SUN: f32 = 1.15;
+const SUN: f32 = 1.5;
+/// No surface gets more light than this.
+const BRIGHTEST: f32 = 1.8;
+/// Light fainter than this casts no shadow, which saves the search for what stands in its way.
+const FAINT: f32 = 0.02;
 /// Lamps where there is a window too: by day they add little.
 const LAMPS_BY_DAY: f32 = 0.6;
 /// The length within a piece that holds back all of a lamp's or a window's light, metres.
@@ -46,8 +50,8 @@ pub(super) struct RoomLight {
 struct Daylight {
     middle: Vec3,
     inward: Vec3,
-    /// Four places on the pane, from which light is taken to come.
-    places: [Vec3; 4],
+    /// Three places on the pane, from which light is taken to come.
+    places: [Vec3; 3],
     area_m2: f32,
 }
 
@@ -67,7 +71,7 @@ impl Daylight {
         Self {
             middle: place(50, 50),
             inward: Vec3::new(dx as f32, dy as f32, 0.0),
-            places: [place(20, 30), place(80, 30), place(35, 75), place(65, 75)],
+            places: [place(20, 30), place(80, 30), place(50, 75)],
             area_m2: metres(span.length()) * metres(z[1] - z[0]),
         }
     }
@@ -118,7 +122,7 @@ impl RoomLight {
         let dim = shade * self.edges(at, normal);
         // Sun and lamps are warm, windows cool.
         let channel = |warm: f32, cool: f32, sunny: f32| {
-            ((toned + lamps * warm + windows * cool) * dim + sun * sunny).clamp(0.02, 1.6).sqrt()
+            ((toned + lamps * warm + windows * cool) * dim + sun * sunny).clamp(0.02, BRIGHTEST).sqrt()
         };
         [channel(1.03, 0.97, 1.06), channel(1.0, 1.0, 1.0), channel(0.93, 1.05, 0.84)]
     }
@@ -143,17 +147,17 @@ impl RoomLight {
         let distance_sq = towards.length_squared().max(0.04);
         let direction = towards / distance_sq.sqrt();
         let facing = (normal.dot(direction) * 0.85 + 0.15).max(0.0) * (-direction.dot(window.inward)).max(0.0);
-        if facing <= 0.0 {
-            return 0.0;
+        let full = 1.2 * window.area_m2 * facing / (1.2 + distance_sq);
+        if full <= FAINT {
+            return full;
         }
-        let held =
-            window.places.map(|place| blocked(&self.blocks, own, at, place - at, SOFT_M)).iter().sum::<f32>() / 4.0;
-        1.2 * window.area_m2 * facing * (1.0 - 0.9 * held) / (1.2 + distance_sq)
+        let held = window.places.map(|place| blocked(&self.blocks, own, at, place - at, SOFT_M));
+        full * (1.0 - 0.9 * held.iter().sum::<f32>() / 3.0)
     }
 
     fn lamplight(&self, at: Vec3, normal: Vec3, own: Option<u32>, lamp: Vec3) -> f32 {
         let full = lit(at, normal, lamp);
-        if full <= 0.0 { 0.0 } else { full * (1.0 - 0.9 * blocked(&self.blocks, own, at, lamp - at, SOFT_M)) }
+        if full <= FAINT { full } else { full * (1.0 - 0.9 * blocked(&self.blocks, own, at, lamp - at, SOFT_M)) }
     }
 
     /// Shadow near the shell's inner edges, except at the face on which the corner itself lies.

@@ -11,9 +11,9 @@ use super::{
 use glam::Vec3;
 
 /// Width over which the edge of a sun patch fades, metres: about as wide as the finest pieces of floor.
-const SOFT_M: f32 = 0.05;
+const SOFT_M: f32 = 0.04;
 /// Half the width of a window's bars in the sun, metres.
-const HALF_BAR_M: f32 = 0.025;
+const HALF_BAR_M: f32 = 0.02;
 /// How far outside something can stand in the sun, metres.
 const FAR_M: f32 = 40.0;
 
