@@ -1,6 +1,6 @@
 //! The bathroom: toilet, basin under a mirror, and bathtub or shower.
 
-use super::super::catalogue::FurnitureKind as K;
+use super::super::{catalogue::FurnitureKind as K, colour::Colour};
 use super::placing::{Along, Furnisher};
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {
@@ -20,7 +20,10 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     for _ in 0..2 {
         room.hang(K::Towel, 90);
     }
-    room.hang(K::WallCabinet, 130);
+    // A shallow one for medicine: a deep one would hide half of so small a room.
+    if let Some(cabinet) = room.hang_sized(K::WallCabinet, [60, 17, 66], 134) {
+        room.paint(cabinet, Colour::White);
+    }
     if let Some(washed) = washed {
         let mat = K::BathMat.size_cm(&mut room.dice);
         let wall = room.wall_behind(washed);

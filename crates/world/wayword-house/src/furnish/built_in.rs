@@ -31,7 +31,11 @@ pub(super) fn furnish(room: &mut Furnisher<'_>, kind: RoomKind) {
         }
     }
     let radiators = walls.iter().flat_map(|wall| [120, 90, 60].map(|width| (*wall, width)));
-    let mut left = if room.inner.area_m2() > 12.0 { 2 } else { 1 };
+    let mut left = match kind {
+        RoomKind::Garage | RoomKind::Closet | RoomKind::LaundryRoom => 0,
+        _ if room.inner.area_m2() > 12.0 => 2,
+        _ => 1,
+    };
     for (wall, width) in radiators {
         if left > 0 && fix(room, wall, K::Radiator, width, 12).is_some() {
             left -= 1;

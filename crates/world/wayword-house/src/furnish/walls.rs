@@ -17,9 +17,13 @@ impl Furnisher<'_> {
 
     /// Hangs something at a height of `base` centimetres, on the first wall with room for it.
     pub(super) fn hang(&mut self, kind: FurnitureKind, base: i32) -> Option<Piece> {
-        let walls = self.shuffled_walls();
         let size = kind.size_cm(&mut self.dice);
-        for wall in walls {
+        self.hang_sized(kind, size, base)
+    }
+
+    /// As [`Self::hang`], with its own size.
+    pub(super) fn hang_sized(&mut self, kind: FurnitureKind, size: [i32; 3], base: i32) -> Option<Piece> {
+        for wall in self.shuffled_walls() {
             let edge = self.inner.edge(wall);
             let spare = edge.length() - size[0];
             let mut offsets: Vec<i32> = (0..=spare.max(0) / 10).map(|step| step * 10).collect();
