@@ -1,6 +1,10 @@
 //! Hangs pictures, mirrors, cloths and coats on the stretches of wall that furniture leaves bare.
 
-use super::super::{catalogue::FurnitureKind as K, model::RoomKind, rect::Wall};
+use super::super::{
+    catalogue::FurnitureKind as K,
+    model::RoomKind,
+    rect::{RectCm, Wall},
+};
 use super::placing::Furnisher;
 
 /// Distance between two things that hang side by side, and to a room's corner, centimetres.
@@ -9,6 +13,10 @@ const GAP_CM: i32 = 9;
 const STRIP_CM: i32 = 5;
 /// The narrowest stretch that something is hung on, centimetres.
 const NARROWEST_CM: i32 = 36;
+
+/// How many things of a kind in a row differ in colour, and how often another colour is drawn for that.
+const APART: usize = 4;
+const TRIES: usize = 8;
 
 /// Heights between which things hang, centimetres above the floor: over the bare floor, over low furniture, and over
 /// high furniture.
@@ -104,8 +112,21 @@ impl Furnisher<'_> {
                 band.base + if matches!(kind, K::CoatHooks | K::Tapestry | K::Towel) { spare } else { spare / 2 };
             let depth = kind.entry().size_cm[1];
             let area = self.at_wall(wall, at, [width, depth, height]);
-            self.put(kind, area, base, height, wall);
+            self.hang_apart(kind, area, base, height, wall);
             at += width + GAP_CM + gap.max(0);
+        }
+    }
+
+    /// Hangs something in a colour that the last things of its kind do not have: no two like pictures side by side.
+    pub(super) fn hang_apart(&mut self, kind: K, area: RectCm, base: i32, height: i32, wall: Wall) {
+        let before = self.last_colours(kind, APART);
+        let piece = self.put(kind, area, base, height, wall);
+        for _ in 0..TRIES {
+            if !before.contains(&self.piece(piece).colour) {
+                return;
+            }
+            let colour = kind.colour(&mut self.dice);
+            self.paint(piece, colour);
         }
     }
 

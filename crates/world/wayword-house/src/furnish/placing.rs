@@ -206,6 +206,12 @@ impl<'a> Furnisher<'a> {
         fits.then(|| self.put(kind, footprint, 0, size[2], wall))
     }
 
+    /// The colours of the last `count` pieces of a kind.
+    pub(super) fn last_colours(&self, kind: FurnitureKind, count: usize) -> Vec<Colour> {
+        let alike = self.pieces.iter().rev().filter(|piece| piece.kind == kind);
+        alike.take(count).map(|piece| piece.colour).collect()
+    }
+
     /// Takes the last piece away again.
     pub(super) fn forget_last(&mut self) {
         self.pieces.pop();

@@ -13,8 +13,9 @@ fn size(kind: RoomKind) -> Option<(i32, i32, i32)> {
         RoomKind::Bathroom | RoomKind::LaundryRoom => Some((70, 135, 215)),
         RoomKind::Kitchen => Some((120, 115, 215)),
         RoomKind::LivingRoom => Some((180, 60, 220)),
-        RoomKind::Staircase => Some((80, 250, 370)),
+        RoomKind::Staircase => Some((100, 215, 400)),
         RoomKind::Hallway | RoomKind::Entryway => Some((70, 100, 215)),
+        RoomKind::Bedroom | RoomKind::DiningRoom => Some((160, 70, 220)),
         _ => Some((140, 90, 215)),
     }
 }

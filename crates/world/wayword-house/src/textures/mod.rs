@@ -5,6 +5,7 @@
 mod noise;
 mod paintings;
 mod patterns;
+mod prints;
 mod scenes;
 
 use super::surface::Pattern;
