@@ -56,7 +56,7 @@ fn measure(kind: K) -> ([i32; 2], i32) {
         K::CoatHooks => ([70, 130], 150),
         K::ToolBoard => ([90, 180], 130),
         K::BulletinBoard => ([80, 140], 110),
-        _ => ([48, 150], 150),
+        _ => ([48, 112], 140),
     }
 }
 
@@ -132,21 +132,15 @@ impl Furnisher<'_> {
 
     /// Something that fits into a width, other than its neighbour, and its own width.
     fn choose(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
-        let usual = usual(self.room.kind);
         let fits = |kind: K| measure(kind).0[0] <= left && Some(kind) != neighbour;
-        let total: i32 = usual.iter().filter(|(kind, _)| fits(*kind)).map(|(_, share)| share).sum();
-        let mut drawn = self.dice.between(1, total.max(1));
-        let mut kind = if left < 46 || self.room.kind == RoomKind::Bathroom { K::Towel } else { K::Painting };
-        for (each, share) in usual.iter().filter(|(kind, _)| fits(*kind)) {
+        let fitting: Vec<_> = usual(self.room.kind).iter().filter(|(kind, _)| fits(*kind)).collect();
+        let mut drawn = self.dice.between(1, fitting.iter().map(|(_, share)| share).sum());
+        let mut is_drawn = |share: i32| {
             drawn -= share;
-            if drawn <= 0 {
-                kind = *each;
-                break;
-            }
-        }
-        if total == 0 {
-            kind = K::Painting;
-        }
+            drawn <= 0
+        };
+        // A picture can be as narrow as what is left.
+        let kind = fitting.iter().find(|(_, share)| is_drawn(*share)).map_or(K::Painting, |(kind, _)| *kind);
         let [least, most] = measure(kind).0;
         let width = self.dice.stepped(least.min(left), most.min(left), 2);
         // What would be left is too narrow for anything else.
