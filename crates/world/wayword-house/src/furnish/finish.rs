@@ -10,10 +10,10 @@ const WOOD: [Colour; 10] = [
     Colour::Brown,
     Colour::Black,
     Colour::Grey,
-    Colour::Wooden,
+    Colour::Red,
     Colour::Blue,
     Colour::Green,
-    Colour::Brown,
+    Colour::Wooden,
     Colour::Cream,
 ];
 /// Finishes of kitchen fronts.
@@ -63,9 +63,10 @@ impl Finishes {
 impl Furnisher<'_> {
     /// Gives a wooden piece the finish of its room, or now and then another one.
     pub(super) fn finish(&mut self, piece: Piece) {
-        let can_be_glass = matches!(self.piece(piece).kind, K::CoffeeTable | K::SideTable | K::ConsoleTable);
+        let can_be_glass =
+            matches!(self.piece(piece).kind, K::CoffeeTable | K::SideTable | K::ConsoleTable | K::DiningTable);
         let finishes = &mut self.finishes;
-        let colour = if can_be_glass && finishes.dice.chance(25) {
+        let colour = if can_be_glass && finishes.dice.chance(45) {
             Colour::Glass
         } else if finishes.dice.chance(30) {
             finishes.accent
