@@ -359,3 +359,22 @@ fn the_room_that_is_the_goal_is_that_of_the_last_frame() {
     fails(Check::Landmarks, "Walk past the sofa and stop in the hallway.", &path);
     fails(Check::Landmarks, "Go to the hallway and stop by the lamp.", &path);
 }
+
+#[test]
+fn a_finish_is_read_before_a_piece_and_held_against_what_was_seen() {
+    let mut path = to_the_bedroom();
+    let dresser =
+        |colour: &str| SeenThing { name: "dresser".into(), colour: Some(colour.into()), ..SeenThing::default() };
+    path.frames[2].things.push(dresser("wooden"));
+    for text in [
+        "Walk past the sofa into the bedroom and stop at the wooden dresser.",
+        "Walk past the sofa into the bedroom and stop at the brown dresser.",
+        "Walk past the sofa into the bedroom and stop at the oak dresser.",
+    ] {
+        passes(text, &path);
+    }
+    fails(Check::Landmarks, "Walk past the sofa into the bedroom and stop at the white dresser.", &path);
+    path.frames[2].things.push(dresser("white"));
+    passes("Walk past the sofa into the bedroom and stop at the white dresser.", &path);
+    fails(Check::Landmarks, "Walk past the sofa into the bedroom and stop at the green dresser.", &path);
+}

@@ -57,7 +57,7 @@ catalogue! {
     FloorLamp "floor lamp" [42 42 162] +- 2 "metal" [Black Silver Gold White];
     Rug "rug" [230 160 1] +- 20 "wool" [Red Blue Beige Grey Teal];
     Plant "plant" [52 52 130] +- 8 "plant" [Green];
-    Painting "painting" [90 4 66] +- 20 "canvas" [Blue Orange Green Red Yellow Purple];
+    Painting "painting" [90 4 66] +- 20 "canvas" [Blue Orange Green Red Yellow Purple Teal White Black Pink];
     SideTable "side table" [48 48 54] +- 2 "wood" [Wooden White Black Glass Blue];
     TableLamp "lamp" [30 30 50] +- 2 "ceramic" [White Blue Green Gold Black];
     Fireplace "fireplace" [140 34 112] +- 10 "stone" [White Grey Red];

@@ -44,11 +44,11 @@ pub(crate) struct Surface {
 }
 
 /// How many paintings there are.
-pub(crate) const ART_COUNT: u8 = 6;
+pub(crate) const ART_COUNT: u8 = 10;
 
 impl Pattern {
     /// All of them, in the order of their textures.
-    pub(crate) const ALL: [Self; 41] = [
+    pub(crate) const ALL: [Self; 45] = [
         Self::Plain,
         Self::Wood,
         Self::Planks,
@@ -90,6 +90,10 @@ impl Pattern {
         Self::Art(3),
         Self::Art(4),
         Self::Art(5),
+        Self::Art(6),
+        Self::Art(7),
+        Self::Art(8),
+        Self::Art(9),
     ];
 
     /// Side of the square that one picture covers, metres.

@@ -35,10 +35,13 @@ mod tests {
             ("dark brown", "brown"),
             ("gray", "grey"),
             ("cream", "white"),
+            ("wooden", "brown"),
+            ("wooden", "light brown"),
+            ("oak", "wooden"),
         ] {
             assert!(same_colour(a, b) && same_colour(b, a), "{a} and {b}");
         }
-        for (a, b) in [("red", "blue"), ("white", "black"), ("green", "red"), ("white", "brown")] {
+        for (a, b) in [("red", "blue"), ("white", "black"), ("green", "red"), ("white", "brown"), ("wooden", "white"), ("glass", "white")] {
             assert!(!same_colour(a, b), "{a} and {b}");
         }
     }

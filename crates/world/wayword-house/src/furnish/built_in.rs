@@ -32,7 +32,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>, kind: RoomKind) {
     }
     let radiators = walls.iter().flat_map(|wall| [120, 90, 60].map(|width| (*wall, width)));
     let mut left = match kind {
-        RoomKind::Garage | RoomKind::Closet | RoomKind::LaundryRoom => 0,
+        RoomKind::Garage | RoomKind::Closet | RoomKind::LaundryRoom | RoomKind::Staircase => 0,
         _ if room.inner.area_m2() > 12.0 => 2,
         _ => 1,
     };

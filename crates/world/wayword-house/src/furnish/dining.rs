@@ -29,6 +29,9 @@ pub(super) fn furnish(room: &mut Furnisher<'_>) {
     }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
     room.stand_anywhere(K::Bookshelf, Along::Ends, 50);
+    if room.dice.chance(30) {
+        room.stand_anywhere(K::GrandfatherClock, Along::Ends, 60);
+    }
     room.curtains();
 }
 

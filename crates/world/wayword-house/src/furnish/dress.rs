@@ -1,6 +1,10 @@
 //! Hangs pictures, mirrors, cloths and coats on the stretches of wall that furniture leaves bare.
 
-use super::super::{catalogue::FurnitureKind as K, model::RoomKind, rect::Wall};
+use super::super::{
+    catalogue::FurnitureKind as K,
+    model::RoomKind,
+    rect::{RectCm, Wall},
+};
 use super::placing::Furnisher;
 
 /// Distance between two things that hang side by side, and to a room's corner, centimetres.
@@ -9,6 +13,10 @@ const GAP_CM: i32 = 9;
 const STRIP_CM: i32 = 5;
 /// The narrowest stretch that something is hung on, centimetres.
 const NARROWEST_CM: i32 = 36;
+
+/// How many things of a kind in a row differ in colour, and how often another colour is drawn for that.
+const APART: usize = 4;
+const TRIES: usize = 8;
 
 /// Heights between which things hang, centimetres above the floor: over the bare floor, over low furniture, and over
 /// high furniture.
@@ -48,7 +56,7 @@ fn measure(kind: K) -> ([i32; 2], i32) {
         K::CoatHooks => ([70, 130], 150),
         K::ToolBoard => ([90, 180], 130),
         K::BulletinBoard => ([80, 140], 110),
-        _ => ([48, 150], 150),
+        _ => ([48, 112], 140),
     }
 }
 
@@ -104,28 +112,35 @@ impl Furnisher<'_> {
                 band.base + if matches!(kind, K::CoatHooks | K::Tapestry | K::Towel) { spare } else { spare / 2 };
             let depth = kind.entry().size_cm[1];
             let area = self.at_wall(wall, at, [width, depth, height]);
-            self.put(kind, area, base, height, wall);
+            self.hang_apart(kind, area, base, height, wall);
             at += width + GAP_CM + gap.max(0);
+        }
+    }
+
+    /// Hangs something in a colour that the last things of its kind do not have: no two like pictures side by side.
+    pub(super) fn hang_apart(&mut self, kind: K, area: RectCm, base: i32, height: i32, wall: Wall) {
+        let before = self.last_colours(kind, APART);
+        let piece = self.put(kind, area, base, height, wall);
+        for _ in 0..TRIES {
+            if !before.contains(&self.piece(piece).colour) {
+                return;
+            }
+            let colour = kind.colour(&mut self.dice);
+            self.paint(piece, colour);
         }
     }
 
     /// Something that fits into a width, other than its neighbour, and its own width.
     fn choose(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
-        let usual = usual(self.room.kind);
         let fits = |kind: K| measure(kind).0[0] <= left && Some(kind) != neighbour;
-        let total: i32 = usual.iter().filter(|(kind, _)| fits(*kind)).map(|(_, share)| share).sum();
-        let mut drawn = self.dice.between(1, total.max(1));
-        let mut kind = if left < 46 || self.room.kind == RoomKind::Bathroom { K::Towel } else { K::Painting };
-        for (each, share) in usual.iter().filter(|(kind, _)| fits(*kind)) {
+        let fitting: Vec<_> = usual(self.room.kind).iter().filter(|(kind, _)| fits(*kind)).collect();
+        let mut drawn = self.dice.between(1, fitting.iter().map(|(_, share)| share).sum());
+        let mut is_drawn = |share: i32| {
             drawn -= share;
-            if drawn <= 0 {
-                kind = *each;
-                break;
-            }
-        }
-        if total == 0 {
-            kind = K::Painting;
-        }
+            drawn <= 0
+        };
+        // A picture can be as narrow as what is left.
+        let kind = fitting.iter().find(|(_, share)| is_drawn(*share)).map_or(K::Painting, |(kind, _)| *kind);
         let [least, most] = measure(kind).0;
         let width = self.dice.stepped(least.min(left), most.min(left), 2);
         // What would be left is too narrow for anything else.

@@ -1,6 +1,6 @@
 //! The finish of furniture: one for a house, another in some of its rooms, and a few pieces that stand out.
 
-use super::super::{colour::Colour, dice::Dice, model::RoomKind};
+use super::super::{catalogue::FurnitureKind as K, colour::Colour, dice::Dice, model::RoomKind};
 use super::placing::{Furnisher, Piece};
 
 /// Finishes of wood, as people name them.
@@ -10,10 +10,10 @@ const WOOD: [Colour; 10] = [
     Colour::Brown,
     Colour::Black,
     Colour::Grey,
-    Colour::Wooden,
+    Colour::Red,
     Colour::Blue,
     Colour::Green,
-    Colour::Brown,
+    Colour::Wooden,
     Colour::Cream,
 ];
 /// Finishes of kitchen fronts.
@@ -63,8 +63,16 @@ impl Finishes {
 impl Furnisher<'_> {
     /// Gives a wooden piece the finish of its room, or now and then another one.
     pub(super) fn finish(&mut self, piece: Piece) {
+        let can_be_glass =
+            matches!(self.piece(piece).kind, K::CoffeeTable | K::SideTable | K::ConsoleTable | K::DiningTable);
         let finishes = &mut self.finishes;
-        let colour = if finishes.dice.chance(30) { finishes.accent } else { finishes.main };
+        let colour = if can_be_glass && finishes.dice.chance(45) {
+            Colour::Glass
+        } else if finishes.dice.chance(30) {
+            finishes.accent
+        } else {
+            finishes.main
+        };
         self.paint(piece, colour);
     }
 }

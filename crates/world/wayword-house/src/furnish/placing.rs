@@ -53,6 +53,11 @@ const BEHIND_LEAF_CM: i32 = 12;
 /// A piece in the room: its index in the list.
 pub(super) type Piece = usize;
 
+/// What a piece is mainly made of: a table of glass is not of wood.
+fn material(kind: FurnitureKind, colour: Colour) -> &'static str {
+    if colour == Colour::Glass { "glass" } else { kind.entry().material }
+}
+
 impl<'a> Furnisher<'a> {
     pub(super) fn new(seed: u64, layout: &'a Layout, index: usize, taste: Taste) -> Self {
         let room = &layout.rooms[index];
@@ -101,7 +106,9 @@ impl<'a> Furnisher<'a> {
 
     /// Sets the colour of a piece, so that it matches the pieces around it.
     pub(super) fn paint(&mut self, piece: Piece, colour: Colour) {
-        self.pieces[piece].colour = colour;
+        let piece = &mut self.pieces[piece];
+        piece.colour = colour;
+        piece.material = material(piece.kind, colour).to_owned();
     }
 
     /// Adds a piece without checking whether it fits.
@@ -120,7 +127,7 @@ impl<'a> Furnisher<'a> {
             kind,
             name: entry.name.to_owned(),
             colour,
-            material: if colour == Colour::Glass { "glass" } else { entry.material }.to_owned(),
+            material: material(kind, colour).to_owned(),
             room: self.index,
             footprint,
             base_cm: self.room.base_cm() + base_cm,
@@ -204,6 +211,12 @@ impl<'a> Furnisher<'a> {
             && !self.blinds_window(wall, &footprint, size[2])
             && self.keeps_ways_open(&footprint);
         fits.then(|| self.put(kind, footprint, 0, size[2], wall))
+    }
+
+    /// The colours of the last `count` pieces of a kind.
+    pub(super) fn last_colours(&self, kind: FurnitureKind, count: usize) -> Vec<Colour> {
+        let alike = self.pieces.iter().rev().filter(|piece| piece.kind == kind);
+        alike.take(count).map(|piece| piece.colour).collect()
     }
 
     /// Takes the last piece away again.

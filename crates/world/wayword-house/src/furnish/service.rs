@@ -22,6 +22,14 @@ pub(super) fn hallway(room: &mut Furnisher<'_>) {
             room.hang_over(table, K::Mirror, 20);
         }
     }
+    for _ in 0..2 {
+        if let Some(shelf) = room.stand_sized(K::Bookshelf, [90, 26, 200], &Wall::ALL, Along::Anywhere, 90) {
+            room.finish(shelf);
+        }
+    }
+    if room.dice.chance(40) {
+        room.stand_anywhere(K::GrandfatherClock, Along::Anywhere, 80);
+    }
     room.stand_anywhere(K::Plant, Along::Ends, 0);
 }
 
@@ -39,7 +47,7 @@ pub(super) fn laundry(room: &mut Furnisher<'_>) {
 }
 
 pub(super) fn entryway(room: &mut Furnisher<'_>) {
-    room.stand_anywhere(K::CoatRack, Along::Ends, 0);
+    room.hang(K::CoatHooks, 62);
     if let Some(rack) = room.stand_anywhere(K::ShoeRack, Along::Middle, 50) {
         room.finish(rack);
         room.hang_over(rack, K::Mirror, 50);

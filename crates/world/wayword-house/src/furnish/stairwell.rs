@@ -7,8 +7,8 @@ use super::super::{
 };
 use super::placing::Furnisher;
 
-/// Width of a column of pictures, and the distance to the next, centimetres.
-const COLUMN_CM: i32 = 62;
+/// Least width of a column of pictures, and the distance to the next, centimetres.
+const COLUMN_CM: i32 = 50;
 const GAP_CM: i32 = 8;
 /// From the steps to the lowest picture, and between two pictures of a column, centimetres.
 const OVER_STEPS_CM: i32 = 55;
@@ -26,22 +26,22 @@ pub(super) fn furnish(room: &mut Furnisher<'_>, stairs: &Stairs) {
     for wall in Wall::ALL {
         let edge = room.inner.edge(wall);
         let count = (edge.length() - GAP_CM) / (COLUMN_CM + GAP_CM);
-        let spare = edge.length() - count * (COLUMN_CM + GAP_CM) + GAP_CM;
+        let width = (edge.length() - GAP_CM) / count.max(1) - GAP_CM;
         for column in 0..count {
-            let from = edge.from + spare / 2 + column * (COLUMN_CM + GAP_CM);
+            let from = edge.from + GAP_CM + column * (width + GAP_CM);
             // Not every column: a stairwell is no gallery.
             if room.dice.chance(FILLED_PERCENT)
-                && let Some(base) = lowest(room, stairs, wall, from)
+                && let Some(base) = lowest(room, stairs, wall, [from, width])
             {
-                hang_column(room, wall, from, base);
+                hang_column(room, wall, [from, width], base);
             }
         }
     }
 }
 
 /// The height over the floor from which a column may hang.
-fn lowest(room: &Furnisher<'_>, stairs: &Stairs, wall: Wall, from: i32) -> Option<i32> {
-    let area = room.at_wall(wall, from, [COLUMN_CM, 4, 0]);
+fn lowest(room: &Furnisher<'_>, stairs: &Stairs, wall: Wall, [from, width]: [i32; 2]) -> Option<i32> {
+    let area = room.at_wall(wall, from, [width, 4, 0]);
     let (x, y) = area.centre();
     let ends = if wall.along_x() { [(area.x0, y), (x, y), (area.x1, y)] } else { [(x, area.y0), (x, y), (x, area.y1)] };
     let steps_m = ends.map(|(x, y)| stairs.height_at(f64::from(x) / 100.0, f64::from(y) / 100.0));
@@ -55,15 +55,15 @@ fn lowest(room: &Furnisher<'_>, stairs: &Stairs, wall: Wall, from: i32) -> Optio
     lower.contains(&area).then_some(OVER_OPENING_CM)
 }
 
-fn hang_column(room: &mut Furnisher<'_>, wall: Wall, from: i32, lowest: i32) {
+fn hang_column(room: &mut Furnisher<'_>, wall: Wall, [from, width]: [i32; 2], lowest: i32) {
     let mut base = lowest;
     while base + HEIGHT_CM / 2 <= TOP_CM {
         let height = HEIGHT_CM.min(TOP_CM - base);
         let kind =
             if height < 110 || room.dice.chance(60) { K::Painting } else { room.dice.pick([K::Photos, K::Tapestry]) };
-        let area = room.at_wall(wall, from, [COLUMN_CM, 4, height]);
+        let area = room.at_wall(wall, from, [width, 4, height]);
         if room.wall_is_bare(wall, &area, base, base + height, true) {
-            room.put(kind, area, base, height, wall);
+            room.hang_apart(kind, area, base, height, wall);
             base += height + APART_CM;
         } else {
             base += 20;

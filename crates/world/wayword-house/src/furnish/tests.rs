@@ -101,3 +101,61 @@ fn sofas_look_at_open_floor() {
         }
     }
 }
+
+#[test]
+fn furniture_has_ten_finishes_and_few_pieces_are_brown() {
+    let mut seen: std::collections::BTreeMap<&str, usize> = std::collections::BTreeMap::new();
+    for house in (0..40).map(generate) {
+        for piece in house.furniture.iter().filter(|piece| piece.material == "wood" || piece.colour == Colour::Glass) {
+            *seen.entry(piece.colour.word()).or_default() += 1;
+        }
+    }
+    let all: usize = seen.values().sum();
+    let common = seen.values().filter(|count| **count * 50 >= all).count();
+    assert!(common >= 10, "{seen:?}");
+    let brown: usize = ["brown", "light brown", "dark brown"].iter().filter_map(|word| seen.get(word)).sum();
+    assert!(brown * 4 < all, "{brown} of {all}: {seen:?}");
+}
+
+#[test]
+fn what_hangs_keeps_clear_of_doors_windows_and_other_things_on_the_wall() {
+    for house in (0..20).map(generate) {
+        let on_wall: Vec<&Furniture> = house.furniture.iter().filter(|piece| piece.kind.is_slim_on_wall()).collect();
+        let covers =
+            |piece: &Furniture, low: i32, high: i32| piece.base_cm < high && low < piece.base_cm + piece.height_cm;
+        for (index, piece) in on_wall.iter().enumerate() {
+            // Curtains hang before the frames of windows.
+            if piece.kind == FurnitureKind::Curtain {
+                continue;
+            }
+            for opening in &house.openings {
+                let hole = opening.span.thickened(10).overlaps(&piece.footprint);
+                assert!(!hole || !covers(piece, opening.base_cm, opening.base_cm + opening.height_cm), "{piece:?}");
+            }
+            for window in house.windows.iter().filter(|window| window.room == piece.room) {
+                let hole = window.span.thickened(10).overlaps(&piece.footprint);
+                assert!(!hole || !covers(piece, window.sill_cm, window.head_cm), "{piece:?} {window:?}");
+            }
+            for other in on_wall[index + 1..].iter().filter(|other| other.room == piece.room) {
+                let clash = other.footprint.overlaps(&piece.footprint)
+                    && covers(piece, other.base_cm, other.base_cm + other.height_cm);
+                assert!(!clash, "house {}: {piece:?} {other:?}", house.seed);
+            }
+        }
+    }
+}
+
+#[test]
+fn stairwells_have_pictures_that_clear_the_steps() {
+    let mut hung = 0;
+    for house in (0..20).map(generate) {
+        let Some(stairs) = &house.stairs else { continue };
+        for piece in house.furniture.iter().filter(|piece| piece.room == stairs.room) {
+            let (x, y) = piece.footprint.centre();
+            let steps_m = stairs.height_at(f64::from(x) / 100.0, f64::from(y) / 100.0);
+            assert!(f64::from(piece.base_cm) / 100.0 > steps_m + 0.4, "{piece:?}");
+            hung += 1;
+        }
+    }
+    assert!(hung > 100, "{hung}");
+}

@@ -8,7 +8,7 @@ use super::super::{
 use super::openings::swing;
 
 /// Angles between a leaf and its wall that a door may stand at, degrees.
-const ANGLES: [i32; 10] = [66, 72, 78, 84, 88, 90, 94, 100, 106, 112];
+const ANGLES: [i32; 10] = [68, 76, 84, 88, 90, 92, 94, 100, 106, 112];
 
 /// Turns each open leaf to an angle at which it stays in its room and out of the way of the other doors. The dice have
 /// their own purpose, so that the plan does not depend on them.

@@ -6,6 +6,7 @@ use super::{
         surface::{Pattern, Surface},
     },
     Look, Shape,
+    clutter::{self, Thing},
     kitchen::tap,
 };
 use glam::{Vec2, Vec3};
@@ -65,6 +66,15 @@ pub(super) fn vanity(look: &Look) -> Shape {
     shape.turned(china, (0.0, -0.03), 0.72, &basin);
     shape.tube(Surface::metal(Colour::Silver), (0.0, -0.03), [0.025, 0.025], [look.h - 0.024, look.h - 0.018]);
     tap(&mut shape, Vec3::new(0.0, hd - 0.05, look.h - 0.03), 0.2);
+    if look.w > 0.7 {
+        clutter::put(&mut shape, Thing::Cup, Vec3::new(hw - 0.07, -hd + 0.12, look.h - 0.03), look.variant as usize);
+        clutter::put(
+            &mut shape,
+            Thing::Bottles,
+            Vec3::new(-hw + 0.13, hd - 0.06, look.h - 0.03),
+            look.variant as usize,
+        );
+    }
     shape
 }
 

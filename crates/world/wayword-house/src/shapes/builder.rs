@@ -69,6 +69,15 @@ impl Shape {
         part.triangles.extend([[a, b, c], [a, c, d]]);
     }
 
+    /// A flat quadrilateral by its corners, counter-clockwise as seen from its front.
+    pub(crate) fn face(&mut self, surface: Surface, corners: [Vec3; 4]) {
+        let [a, b, _, d] = corners;
+        let normal = (b - a).cross(d - a).normalize_or_zero();
+        let part = self.part(surface);
+        let [a, b, c, d] = corners.map(|corner| part.vertex(corner, normal, Vec2::new(corner.x + corner.y, -corner.z)));
+        part.triangles.extend([[a, b, c], [a, c, d]]);
+    }
+
     /// A quadrilateral that shows a whole picture.
     pub(crate) fn picture(&mut self, surface: Surface, corner: Vec3, u: Vec3, v: Vec3) {
         self.quad(surface, corner, u, v, Vec2::ZERO, Vec2::ONE);

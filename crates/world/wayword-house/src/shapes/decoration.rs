@@ -44,7 +44,18 @@ pub(super) fn radiator(look: &Look) -> Shape {
 
 /// The painting whose main colour is the piece's colour.
 fn art_of(colour: Colour) -> u8 {
-    let order = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Red, Colour::Yellow, Colour::Purple];
+    let order = [
+        Colour::Blue,
+        Colour::Orange,
+        Colour::Green,
+        Colour::Red,
+        Colour::Yellow,
+        Colour::Purple,
+        Colour::Teal,
+        Colour::White,
+        Colour::Black,
+        Colour::Pink,
+    ];
     order.iter().position(|each| *each == colour).unwrap_or(0) as u8 % ART_COUNT
 }
 

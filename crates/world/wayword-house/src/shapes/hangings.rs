@@ -89,7 +89,7 @@ pub(super) fn coat_hooks(look: &Look) -> Shape {
     let steel = Surface::metal(Colour::DarkGrey);
     board(&mut shape, wood, [-hw, hw], [hd - 0.03, hd], [look.h - 0.26, look.h - 0.12]);
     board(&mut shape, wood, [-hw, hw], [-hd, hd], [look.h - 0.1, look.h - 0.07]);
-    let hooks = ((look.w / 0.2) as usize).max(2);
+    let hooks = ((look.w / 0.27) as usize).max(2);
     let width = look.w / hooks as f32;
     for hook in 0..hooks {
         let x = -hw + width * (hook as f32 + 0.5);
@@ -99,21 +99,7 @@ pub(super) fn coat_hooks(look: &Look) -> Shape {
         let cloth = Surface::fabric(CLOTHES[mixed % CLOTHES.len()]);
         // Coats reach further down than jackets.
         let bottom = [0.0, 0.22, 0.1, 0.36][mixed % 4] * look.h;
-        let half = width * 0.48;
-        shape.soft(cloth, [x - half, x + half], [-hd, hd - 0.03], [bottom, look.h - 0.3], 0.045);
-        shape.soft(
-            cloth,
-            [x - half * 0.7, x + half * 0.7],
-            [-hd + 0.01, hd - 0.03],
-            [look.h - 0.34, look.h - 0.19],
-            0.04,
-        );
-        shape.block(
-            cloth.shade(0.7),
-            [x - 0.004, x + 0.004],
-            [-hd - 0.002, -hd + 0.01],
-            [bottom + 0.03, look.h - 0.33],
-        );
+        coat(&mut shape, cloth, [x, width * 0.46], [bottom, look.h - 0.17]);
     }
     let hat = Surface::fabric(CLOTHES[(look.variant as usize + 4) % CLOTHES.len()]);
     shape.turned(
@@ -130,6 +116,28 @@ pub(super) fn coat_hooks(look: &Look) -> Shape {
         ],
     );
     shape
+}
+
+/// A coat that hangs by its collar: wide at the hem, with shoulders, sleeves and an open front.
+fn coat(shape: &mut Shape, cloth: Surface, [x, half]: [f32; 2], [bottom, top]: [f32; 2]) {
+    let shoulder = top - 0.09;
+    let cut =
+        [(half * 0.9, bottom), (half * 0.74, shoulder - 0.3), (half * 0.72, shoulder), (half * 0.3, top), (0.0, top)];
+    shape.turned(cloth, (x, 0.0), 0.42, &cut);
+    let dark = cloth.shade(0.78);
+    for side in [-1.0, 1.0] {
+        let from = Vec3::new(x + side * half * 0.66, 0.0, shoulder - 0.01);
+        let to = Vec3::new(x + side * half * 0.92, -0.01, (shoulder - 0.58).max(bottom + 0.06));
+        shape.rod(cloth.shade(0.9), from, to, 0.042);
+        shape.ball(cloth.shade(0.9), from, 0.042);
+        shape.rod(
+            dark,
+            Vec3::new(x, -half * 0.31, shoulder - 0.05),
+            Vec3::new(x + side * half * 0.22, -half * 0.14, top),
+            0.012,
+        );
+    }
+    shape.rod(dark, Vec3::new(x, -half * 0.385, bottom + 0.02), Vec3::new(x, -half * 0.305, shoulder - 0.05), 0.007);
 }
 
 /// Cork in a frame, full of notes.

@@ -6,6 +6,7 @@ use super::{
         surface::{Pattern, Surface},
     },
     Look, Shape,
+    clutter::{self, Thing},
 };
 use glam::Vec3;
 
@@ -51,6 +52,15 @@ pub(super) fn counter(look: &Look) -> Shape {
     let mut shape = Shape::default();
     base(&mut shape, look, Surface::wood(look.colour));
     worktop(&mut shape, look);
+    let (hw, hd) = look.half();
+    let things = [Thing::Bottles, Thing::Bowl, Thing::Cup, Thing::Box, Thing::Tray];
+    if look.w > 1.0 {
+        clutter::scatter(&mut shape, &things, [-hw + 0.05, hw - 0.05], hd - 0.2, look.h, look.variant);
+    } else {
+        // A device may stand behind it.
+        let thing = [Thing::Cup, Thing::Bowl, Thing::Bottles][look.variant as usize % 3];
+        clutter::put(&mut shape, thing, Vec3::new(-hw + 0.14, -hd + 0.14, look.h), look.variant as usize);
+    }
     shape
 }
 
@@ -170,6 +180,13 @@ pub(super) fn island(look: &Look) -> Shape {
     let body = Look { w: look.w - 0.1, d: look.d - 0.16, ..*look };
     base(&mut shape, &body, Surface::wood(look.colour));
     shape.soft(top(), [-hw, hw], [-hd, hd], [look.h - 0.05, look.h], 0.012);
+    let things = [Thing::Cup, Thing::Bottles, Thing::Books, Thing::Tray, Thing::Laptop];
+    clutter::put(
+        &mut shape,
+        things[look.variant as usize % 5],
+        Vec3::new(-hw * 0.6, 0.0, look.h),
+        look.variant as usize,
+    );
     shape
 }
 

@@ -6,6 +6,7 @@ use super::{
         surface::{Pattern, Surface},
     },
     Look, Shape,
+    clutter::{self, Thing},
 };
 use glam::Vec3;
 
@@ -40,6 +41,8 @@ pub(super) fn washer(look: &Look) -> Shape {
         [-hd - 0.012, -hd - 0.008],
         [look.h - 0.11, look.h - 0.06],
     );
+    clutter::put(&mut shape, Thing::Bottles, Vec3::new(-hw + 0.16, 0.08, look.h), look.variant as usize);
+    clutter::put(&mut shape, Thing::Box, Vec3::new(hw - 0.18, 0.08, look.h), 0);
     shape
 }
 
@@ -47,6 +50,7 @@ pub(super) fn washer(look: &Look) -> Shape {
 pub(super) fn dryer(look: &Look) -> Shape {
     let mut shape = machine(look, [120, 124, 130]);
     let (hw, hd) = look.half();
+    clutter::put(&mut shape, Thing::Towels, Vec3::new(0.0, 0.06, look.h), look.variant as usize);
     for bar in 0..5 {
         let z = 0.06 + 0.02 * bar as f32;
         shape.block(Surface::plain([110, 110, 112]), [-hw + 0.06, hw - 0.06], [-hd - 0.006, -hd], [z, z + 0.008]);

@@ -3,6 +3,7 @@
 mod bathroom;
 mod beds;
 mod builder;
+mod clutter;
 mod decoration;
 mod devices;
 mod garage;
@@ -56,10 +57,12 @@ pub(crate) fn shape(kind: FurnitureKind, look: &Look) -> Shape {
         K::BarStool => seating::stool(look),
         K::Bench => seating::bench(look),
         K::OfficeChair => seating::office_chair(look),
-        K::CoffeeTable | K::DiningTable | K::SideTable | K::ConsoleTable => tables::table(look),
+        K::CoffeeTable | K::DiningTable | K::ConsoleTable => tables::laid_table(look),
+        K::SideTable => tables::table(look),
         K::Desk => tables::desk(look),
         K::Workbench => garage::workbench(look),
-        K::TvStand | K::Sideboard => storage::low_cabinet(look),
+        K::TvStand => storage::tv_stand(look),
+        K::Sideboard => storage::low_cabinet(look),
         K::Dresser => storage::drawers(look, 2, 3),
         K::Nightstand => storage::drawers(look, 1, 2),
         K::FilingCabinet => storage::filing_cabinet(look),

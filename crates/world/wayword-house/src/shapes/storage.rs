@@ -6,6 +6,7 @@ use super::{
         surface::{Pattern, Surface},
     },
     Look, Shape,
+    clutter::{self, Thing},
 };
 use glam::{Vec2, Vec3};
 
@@ -50,6 +51,34 @@ pub(super) fn low_cabinet(look: &Look) -> Shape {
     shape.block(wood.shade(0.85), [-hw, hw], [-hd, hd], [0.1, look.h - 0.025]);
     shape.block(wood, [-hw - 0.01, hw + 0.01], [-hd - 0.015, hd], [look.h - 0.025, look.h]);
     fronts(&mut shape, look, 4, 1, (0.12, look.h - 0.03), true);
+    let things = [Thing::Candles, Thing::Bowl, Thing::Bottles, Thing::Photo, Thing::Books, Thing::Tray];
+    clutter::scatter(&mut shape, &things, [-hw + 0.06, hw - 0.06], -hd * 0.3, look.h, look.variant);
+    shape
+}
+
+/// A TV stand: doors at both ends, and open shelves with a player and films between them.
+pub(super) fn tv_stand(look: &Look) -> Shape {
+    let mut shape = Shape::default();
+    let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
+    let third = hw * 0.36;
+    let (low, high) = (0.1, look.h - 0.03);
+    shape.legs(wood.shade(0.7), (hw - 0.03, hd - 0.02), 0.05, 0.12);
+    shape.block(wood, [-hw - 0.01, hw + 0.01], [-hd - 0.015, hd], [high, look.h]);
+    shape.block(wood.shade(0.9), [-hw, hw], [-hd, hd], [low, low + 0.03]);
+    shape.block(Surface::plain([40, 38, 38]), [-third, third], [hd - 0.03, hd], [low, high]);
+    let middle = (low + high) / 2.0;
+    shape.block(wood.shade(0.9), [-third, third], [-hd + 0.02, hd], [middle, middle + 0.02]);
+    for (from, to) in [(-hw, -third), (third, hw)] {
+        shape.block(wood.shade(0.85), [from, to], [-hd, hd], [low, high]);
+        shape.block(wood.shade(1.06), [from + 0.012, to - 0.012], [-hd - 0.012, -hd], [low + 0.02, high - 0.012]);
+        let knob = Vec3::new((from + to) / 2.0, -hd - 0.02, high - 0.08);
+        shape.ball(Surface::metal(Colour::DarkGrey), knob, 0.016);
+    }
+    let (black, light) = (Surface::plain([26, 26, 30]), Surface::plain([80, 200, 250]).glowing());
+    shape.block(black, [-third + 0.05, third - 0.06], [-hd + 0.04, hd - 0.08], [middle + 0.02, middle + 0.08]);
+    shape.block(light, [third - 0.14, third - 0.1], [-hd + 0.036, -hd + 0.04], [middle + 0.045, middle + 0.055]);
+    clutter::put(&mut shape, Thing::Books, Vec3::new(-0.08, -0.02, low + 0.03), look.variant as usize * 2 + 1);
+    clutter::put(&mut shape, Thing::Remote, Vec3::new(hw - 0.12, -hd * 0.4, look.h), 0);
     shape
 }
 
@@ -61,6 +90,13 @@ pub(super) fn drawers(look: &Look, columns: usize, rows: usize) -> Shape {
     shape.block(wood.shade(0.82), [-hw, hw], [-hd, hd], [0.08, look.h - 0.025]);
     shape.block(wood, [-hw - 0.01, hw + 0.01], [-hd - 0.015, hd], [look.h - 0.025, look.h]);
     fronts(&mut shape, look, columns, rows, (0.1, look.h - 0.03), false);
+    if columns > 1 {
+        let things = [Thing::Box, Thing::Candles, Thing::Photo, Thing::Books, Thing::Bottles];
+        clutter::scatter(&mut shape, &things, [-hw + 0.06, hw - 0.06], -hd * 0.3, look.h, look.variant);
+    } else {
+        let thing = [Thing::Cup, Thing::Remote, Thing::Photo][look.variant as usize % 3];
+        clutter::put(&mut shape, thing, Vec3::new(-hw + 0.1, -hd + 0.1, look.h), look.variant as usize);
+    }
     shape
 }
 

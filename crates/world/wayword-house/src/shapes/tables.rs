@@ -6,6 +6,7 @@ use super::{
         surface::{Pattern, Surface},
     },
     Look, Shape,
+    clutter::{self, Thing},
 };
 use glam::Vec3;
 
@@ -23,6 +24,21 @@ pub(super) fn table(look: &Look) -> Shape {
     if look.h < 0.6 {
         shape.block(wood.shade(0.9), [-aw, aw], [-ad, ad], [0.12, 0.14]);
     }
+    shape
+}
+
+/// Dressed as such tables are: what lies on it depends on its size.
+pub(super) fn laid_table(look: &Look) -> Shape {
+    let mut shape = table(look);
+    let (hw, hd) = look.half();
+    let things: &[Thing] = if look.h < 0.6 {
+        &[Thing::Books, Thing::Remote, Thing::Tray, Thing::Candles, Thing::Bowl, Thing::Cup]
+    } else if look.d < 0.4 {
+        &[Thing::Photo, Thing::Candles, Thing::Bowl, Thing::Books, Thing::Box]
+    } else {
+        &[Thing::Cup, Thing::Bowl, Thing::Bottles, Thing::Candles, Thing::Papers]
+    };
+    clutter::scatter(&mut shape, things, [-hw + 0.06, hw - 0.06], -hd * 0.35, look.h, look.variant);
     shape
 }
 
@@ -62,11 +78,9 @@ pub(super) fn desk(look: &Look) -> Shape {
         shape.block(handle, [hw - 0.27, hw - 0.15], [-hd, -hd + 0.02], [z + 0.1, z + 0.12]);
     }
     shape.block(Surface::plain([52, 52, 56]), [-0.22, 0.22], [-hd + 0.1, -hd + 0.24], [look.h, look.h + 0.02]);
-    shape.block(
-        Surface::plain([240, 240, 235]),
-        [-hw + 0.12, -hw + 0.33],
-        [-hd + 0.12, -hd + 0.41],
-        [look.h, look.h + 0.01],
-    );
+    let left = [Thing::Papers, Thing::Books, Thing::Cup][look.variant as usize % 3];
+    clutter::put(&mut shape, left, Vec3::new(-hw + 0.2, -hd + 0.22, look.h), look.variant as usize);
+    let right = [Thing::Cup, Thing::Photo, Thing::Books][(look.variant / 3) as usize % 3];
+    clutter::put(&mut shape, right, Vec3::new(hw - 0.18, -hd + 0.2, look.h), look.variant as usize + 3);
     shape
 }

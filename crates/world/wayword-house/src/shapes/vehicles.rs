@@ -6,33 +6,74 @@ use super::{
 };
 use glam::Vec3;
 
-/// A small car; its nose looks forward.
+/// A car with a bonnet, a cabin with sloping screens, and a boot; its nose looks forward.
 pub(super) fn car(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let ((hw, hd), paint) = (look.half(), Surface::plain(look.colour.rgb()));
-    let glass = Surface::plain([44, 54, 64]);
-    shape.soft(paint, [-hw, hw], [-hd, hd], [0.26, 0.84], 0.16);
-    shape.soft(paint, [-hw + 0.14, hw - 0.14], [-hd * 0.36, hd * 0.86], [0.7, look.h], 0.2);
-    let (front, back) = (-hd * 0.36 - 0.01, hd * 0.86 + 0.01);
-    shape.soft(glass, [-hw + 0.24, hw - 0.24], [front, front + 0.1], [0.9, 1.32], 0.04);
-    shape.soft(glass, [-hw + 0.24, hw - 0.24], [back - 0.1, back], [0.9, 1.32], 0.04);
+    shape.soft(paint, [-hw, hw], [-hd, hd], [0.26, BELT], 0.16);
+    shape.soft(paint.shade(0.94), [-hw + 0.1, hw - 0.1], [-hd + 0.12, -hd * 0.34], [0.6, BELT + 0.05], 0.06);
+    cabin(&mut shape, look, paint);
+    let (dark, white) = (Surface::plain([30, 30, 32]), Surface::plain([250, 250, 246]));
     for side in [-1.0, 1.0] {
-        let x = side * (hw - 0.145);
-        for (y0, y1) in [(-hd * 0.28, hd * 0.2), (hd * 0.26, hd * 0.74)] {
-            shape.soft(glass, [x - 0.015, x + 0.015], [y0, y1], [0.9, 1.3], 0.01);
-        }
         let (low, lamp) = (side * (hw - 0.3), Surface::plain([255, 252, 226]).glowing());
-        shape.soft(lamp, [low - 0.15, low + 0.15], [-hd - 0.01, -hd + 0.1], [0.58, 0.72], 0.05);
+        shape.soft(lamp, [low - 0.16, low + 0.16], [-hd - 0.01, -hd + 0.1], [0.56, 0.72], 0.05);
         let rear = Surface::plain([200, 30, 30]);
         shape.soft(rear, [low - 0.15, low + 0.15], [hd - 0.1, hd + 0.01], [0.6, 0.74], 0.05);
         for y in [-hd * 0.62, hd * 0.6] {
             wheel(&mut shape, Vec3::new(side * (hw - 0.12), y, 0.32), side);
         }
+        let x = side * (hw - 0.01);
+        for y in [-hd * 0.02, hd * 0.36] {
+            shape.block(Surface::metal(Colour::Silver), [x - 0.02, x + 0.02], [y, y + 0.16], [BELT - 0.13, BELT - 0.1]);
+        }
+        let mirror = [side * (hw - 0.06), side * (hw + 0.08)];
+        let across = [mirror[0].min(mirror[1]), mirror[0].max(mirror[1])];
+        shape.soft(paint.shade(0.9), across, [-hd * 0.28, -hd * 0.23], [BELT + 0.03, BELT + 0.15], 0.02);
     }
-    shape.block(Surface::plain([30, 30, 32]), [-0.35, 0.35], [-hd - 0.005, -hd + 0.1], [0.4, 0.54]);
-    shape.block(Surface::plain([250, 250, 246]), [-0.25, 0.25], [-hd - 0.02, -hd], [0.3, 0.4]);
-    shape.block(Surface::plain([250, 250, 246]), [-0.25, 0.25], [hd, hd + 0.02], [0.46, 0.57]);
+    shape.block(dark, [-0.42, 0.42], [-hd - 0.005, -hd + 0.1], [0.44, 0.6]);
+    for bar in 0..4 {
+        let z = 0.455 + 0.036 * bar as f32;
+        shape.block(Surface::metal(Colour::Silver), [-0.4, 0.4], [-hd - 0.012, -hd], [z, z + 0.012]);
+    }
+    for (y, z) in [([-hd - 0.02, -hd], [0.3, 0.4]), ([hd, hd + 0.02], [0.46, 0.57])] {
+        shape.block(white, [-0.26, 0.26], y, z);
+        shape.block(dark, [-0.2, 0.2], [y[0] - 0.003, y[1] + 0.003], [z[0] + 0.035, z[1] - 0.035]);
+    }
     shape
+}
+
+/// Height at which the windows of a car begin, metres.
+const BELT: f32 = 0.86;
+
+/// Roof, screens and side windows: a box that is smaller above than below.
+fn cabin(shape: &mut Shape, look: &Look, paint: Surface) {
+    let (hw, hd) = look.half();
+    let (roof, glass) = (look.h - 0.05, Surface::plain([44, 54, 64]));
+    let low = |x: f32, y: f32| Vec3::new(x * (hw - 0.06), y * hd, BELT - 0.04);
+    let high = |x: f32, y: f32| Vec3::new(x * (hw - 0.24), y * hd, roof);
+    let (fore, aft, fore_up, aft_up) = (-0.36, 0.86, -0.1, 0.62);
+    // Each face is given by its lower corners, left to right as seen from outside, and the upper ones.
+    let faces = [
+        [low(-1.0, fore), low(1.0, fore), high(1.0, fore_up), high(-1.0, fore_up)],
+        [low(1.0, aft), low(-1.0, aft), high(-1.0, aft_up), high(1.0, aft_up)],
+        [low(1.0, fore), low(1.0, aft), high(1.0, aft_up), high(1.0, fore_up)],
+        [low(-1.0, aft), low(-1.0, fore), high(-1.0, fore_up), high(-1.0, aft_up)],
+    ];
+    for (index, corners) in faces.into_iter().enumerate() {
+        shape.face(paint, corners);
+        let panes: &[[f32; 2]] = if index < 2 { &[[0.07, 0.93]] } else { &[[0.08, 0.48], [0.53, 0.92]] };
+        for [from, to] in panes {
+            shape.face(glass, pane(corners, [*from, *to], [0.16, 0.92]));
+        }
+    }
+    shape.soft(paint, [-hw + 0.23, hw - 0.23], [fore_up * hd - 0.02, aft_up * hd + 0.02], [roof - 0.03, look.h], 0.03);
+}
+
+/// A part of a face, a little before it.
+fn pane([a, b, c, d]: [Vec3; 4], across: [f32; 2], up: [f32; 2]) -> [Vec3; 4] {
+    let out = (b - a).cross(d - a).normalize_or_zero() * 0.006;
+    let at = |s: f32, t: f32| a.lerp(b, s).lerp(d.lerp(c, s), t) + out;
+    [at(across[0], up[0]), at(across[1], up[0]), at(across[1], up[1]), at(across[0], up[1])]
 }
 
 fn wheel(shape: &mut Shape, centre: Vec3, side: f32) {

@@ -1,7 +1,7 @@
 //! The inside of a room: floor, ceiling, and walls with holes.
 
 use super::super::{
-    model::{CEILING_CM, FloorFinish, HALF_WALL_CM, House},
+    model::{CEILING_CM, FloorFinish, HALF_WALL_CM, House, RoomKind},
     rect::{RectCm, SpanCm, Wall},
     shapes::Shape,
     surface::{Pattern, Surface},
@@ -11,6 +11,11 @@ use glam::{Vec2, Vec3};
 
 /// Height of the skirting board, centimetres.
 const SKIRTING_CM: i32 = 9;
+
+/// Up to which height the walls of a room are tiled, centimetres.
+fn tiled_cm(kind: RoomKind) -> i32 {
+    if kind == RoomKind::Bathroom { 129 } else { 0 }
+}
 
 /// A hole in a wall: from, to, lower and upper edge, centimetres.
 type Hole = [i32; 4];
@@ -45,14 +50,22 @@ fn one_wall(shape: &mut Shape, house: &House, index: usize, wall: Wall) {
     let holes = holes(house, index, wall);
     let paint = Surface::new(Pattern::Plaster, room.wall_colour.rgb());
     let trim = Surface::plain([238, 237, 233]);
+    let (tiles, tiled_to) = (Surface::new(Pattern::Tiles, [246, 247, 248]), base + tiled_cm(room.kind));
     let columns = cuts(edge.from, edge.to, holes.iter().flat_map(|hole| [hole[0], hole[1]]), 40);
-    let rows = cuts(base, top, holes.iter().flat_map(|hole| [hole[2], hole[3]]).chain([base + SKIRTING_CM]), 45);
+    let rows =
+        cuts(base, top, holes.iter().flat_map(|hole| [hole[2], hole[3]]).chain([base + SKIRTING_CM, tiled_to]), 45);
     for column in columns.windows(2) {
         for row in rows.windows(2) {
             let inside =
                 |hole: &Hole| hole[0] <= column[0] && column[1] <= hole[1] && hole[2] <= row[0] && row[1] <= hole[3];
             if !holes.iter().any(inside) {
-                let surface = if row[1] <= base + SKIRTING_CM { trim } else { paint };
+                let surface = if row[1] <= tiled_to {
+                    tiles
+                } else if row[1] <= base + SKIRTING_CM {
+                    trim
+                } else {
+                    paint
+                };
                 wall_piece(shape, surface, &line, wall, [column[0], column[1], row[0], row[1]]);
             }
         }

@@ -6,6 +6,7 @@ mod noise;
 mod outside;
 mod paintings;
 mod patterns;
+mod prints;
 mod scenes;
 
 use super::surface::Pattern;

@@ -1,8 +1,9 @@
-//! Six paintings, each with its own main colour.
+//! Paintings, each with its own main colour.
 
 use super::{
     Rgb,
     noise::{away, cloudy, hash, mix, smooth},
+    prints,
 };
 
 /// The painting with this number.
@@ -14,7 +15,11 @@ pub(super) fn painting(which: u8, u: f32, v: f32) -> Rgb {
         2 => meadow(u, v),
         3 => poppies(u, v),
         4 => wheat(u, v),
-        _ => dusk(u, v),
+        5 => dusk(u, v),
+        6 => prints::discs(u, v),
+        7 => prints::branch(u, v),
+        8 => prints::skyline(u, v),
+        _ => prints::still_life(u, v),
     };
     colour.map(|channel| channel + canvas)
 }
