@@ -37,7 +37,7 @@ pub(super) fn scatter(shape: &mut Shape, things: &[Thing], [from, to]: [f32; 2],
     for place in 0..places {
         let x = from + (to - from) * (place as f32 + 0.5) / places as f32;
         // A third of the places stay free, and the middle: a vase or a lamp may stand there.
-        if (mixed / 3 + place * 5) % 3 == 0 || x.abs() < 0.16 {
+        if (mixed / 3 + place * 5).is_multiple_of(3) || x.abs() < 0.16 {
             continue;
         }
         let thing = things[(mixed + place) % things.len()];

@@ -21,11 +21,6 @@ const CLOTHES: [Colour; 8] = [
     Colour::Brown,
 ];
 
-/// A flat board with its front at `-hd`.
-fn board(shape: &mut Shape, surface: Surface, x: [f32; 2], y: [f32; 2], z: [f32; 2]) {
-    shape.block(surface, x, y, z);
-}
-
 /// A dense wall of framed photographs.
 pub(super) fn photos(look: &Look) -> Shape {
     let mut shape = Shape::default();
@@ -48,7 +43,7 @@ pub(super) fn photos(look: &Look) -> Shape {
         let (inset, bar) = (if mixed.is_multiple_of(2) { 0.012 } else { 0.024 }, 0.022);
         let (x0, z0) = (-hw + w * column as f32 + inset, h * row as f32 + inset);
         let (x1, z1) = (x0 + w - 2.0 * inset, z0 + h - 2.0 * inset);
-        board(&mut shape, frame, [x0, x1], [-hd, hd], [z0, z1]);
+        shape.block(frame, [x0, x1], [-hd, hd], [z0, z1]);
         let rim = bar + 0.03;
         let (corner, u, v) = (Vec3::new(x0 + bar, -hd - 0.002, z0 + bar), x1 - x0 - 2.0 * bar, z1 - z0 - 2.0 * bar);
         shape.picture(mats, corner, Vec3::X * u, Vec3::Z * v);
@@ -87,8 +82,8 @@ pub(super) fn coat_hooks(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));
     let steel = Surface::metal(Colour::DarkGrey);
-    board(&mut shape, wood, [-hw, hw], [hd - 0.03, hd], [look.h - 0.26, look.h - 0.12]);
-    board(&mut shape, wood, [-hw, hw], [-hd, hd], [look.h - 0.1, look.h - 0.07]);
+    shape.block(wood, [-hw, hw], [hd - 0.03, hd], [look.h - 0.26, look.h - 0.12]);
+    shape.block(wood, [-hw, hw], [-hd, hd], [look.h - 0.1, look.h - 0.07]);
     let hooks = ((look.w / 0.27) as usize).max(2);
     let width = look.w / hooks as f32;
     for hook in 0..hooks {
@@ -144,7 +139,7 @@ fn coat(shape: &mut Shape, cloth: Surface, [x, half]: [f32; 2], [bottom, top]: [
 pub(super) fn bulletin_board(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let (hw, hd) = look.half();
-    board(&mut shape, Surface::wood(Colour::Wooden), [-hw, hw], [-hd, hd], [0.0, look.h]);
+    shape.block(Surface::wood(Colour::Wooden), [-hw, hw], [-hd, hd], [0.0, look.h]);
     let cork = Surface::new(Pattern::Carpet, [204, 158, 104]);
     let corner = Vec3::new(-hw + 0.03, -hd - 0.002, 0.03);
     shape.quad(cork, corner, Vec3::X * (look.w - 0.06), Vec3::Z * (look.h - 0.06), Vec2::ZERO, Vec2::new(2.0, 2.0));
@@ -176,7 +171,7 @@ pub(super) fn bulletin_board(look: &Look) -> Shape {
 pub(super) fn tool_board(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let (hw, hd) = look.half();
-    board(&mut shape, Surface::wood(Colour::LightBrown), [-hw, hw], [-hd + 0.02, hd], [0.0, look.h]);
+    shape.block(Surface::wood(Colour::LightBrown), [-hw, hw], [-hd + 0.02, hd], [0.0, look.h]);
     let (steel, wood) = (Surface::metal(Colour::Grey), Surface::wood(Colour::Brown));
     let grips = [Surface::plain([200, 44, 36]), Surface::plain([236, 178, 40]), Surface::plain([40, 90, 170])];
     let places = ((look.w / 0.2) as usize).max(3);
@@ -186,18 +181,18 @@ pub(super) fn tool_board(look: &Look) -> Shape {
         let mixed = place + look.variant as usize;
         let (high, low) = (look.h * 0.62, look.h * 0.12);
         if mixed.is_multiple_of(2) {
-            board(&mut shape, wood, [x - 0.016, x + 0.016], y, [high, high + 0.28]);
-            board(&mut shape, steel, [x - 0.07, x + 0.07], y, [high + 0.26, high + 0.32]);
+            shape.block(wood, [x - 0.016, x + 0.016], y, [high, high + 0.28]);
+            shape.block(steel, [x - 0.07, x + 0.07], y, [high + 0.26, high + 0.32]);
         } else {
-            board(&mut shape, grips[mixed % 3], [x - 0.02, x + 0.02], y, [high, high + 0.12]);
-            board(&mut shape, steel, [x - 0.01, x + 0.01], y, [high + 0.12, high + 0.32]);
+            shape.block(grips[mixed % 3], [x - 0.02, x + 0.02], y, [high, high + 0.12]);
+            shape.block(steel, [x - 0.01, x + 0.01], y, [high + 0.12, high + 0.32]);
         }
         if mixed.is_multiple_of(3) {
             let centre = Vec3::new(x, -hd, low + 0.16);
             shape.hoop(Surface::plain([50, 120, 70]), centre, Vec3::Y, 0.08, 0.02);
         } else {
-            board(&mut shape, steel, [x - 0.025, x + 0.025], y, [low, low + 0.26]);
-            board(&mut shape, grips[(mixed + 1) % 3], [x - 0.04, x + 0.04], y, [low + 0.24, low + 0.36]);
+            shape.block(steel, [x - 0.025, x + 0.025], y, [low, low + 0.26]);
+            shape.block(grips[(mixed + 1) % 3], [x - 0.04, x + 0.04], y, [low + 0.24, low + 0.36]);
         }
     }
     shape
