@@ -41,7 +41,14 @@ mod tests {
         ] {
             assert!(same_colour(a, b) && same_colour(b, a), "{a} and {b}");
         }
-        for (a, b) in [("red", "blue"), ("white", "black"), ("green", "red"), ("white", "brown"), ("wooden", "white"), ("glass", "white")] {
+        for (a, b) in [
+            ("red", "blue"),
+            ("white", "black"),
+            ("green", "red"),
+            ("white", "brown"),
+            ("wooden", "white"),
+            ("glass", "white"),
+        ] {
             assert!(!same_colour(a, b), "{a} and {b}");
         }
     }
