@@ -35,6 +35,11 @@ pub trait Platform: Send + Sync {
         Ok(())
     }
 
+    /// The name by which it calls a scene that it knows by several; else the same name.
+    fn called(&self, scene: &SceneId) -> SceneId {
+        scene.clone()
+    }
+
     /// The scenes of its data that [`examine`](Self::examine) knows, sorted: those that it can offer, and those that
     /// something is wrong with. Empty where it cannot tell before it is asked for views.
     ///
@@ -174,6 +179,10 @@ macro_rules! platform_behind {
 
             fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
                 (**self).check(scenes)
+            }
+
+            fn called(&self, scene: &SceneId) -> SceneId {
+                (**self).called(scene)
             }
 
             fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {

@@ -13,6 +13,9 @@ use wayword_core::{Action, DVec3};
 /// Most actions of one episode.
 const ACTIONS: usize = 25_000;
 
+/// Most actions of all episodes together that are kept in memory.
+const ACTIONS_KEPT: usize = 20_000_000;
+
 /// What an agent does in an episode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Acted {
@@ -59,8 +62,15 @@ pub fn write(file: &Path, acted: &BTreeMap<String, Acted>) -> Result<(), FormatE
 /// When the file cannot be read, or an episode breaks a rule; the error names it and the field.
 pub fn read(file: &Path) -> Result<BTreeMap<String, Acted>, FormatError> {
     let mut all = BTreeMap::new();
+    let mut kept = 0;
     input::each_entry(file, |episode, mut item| {
-        all.insert(episode.to_owned(), take(&mut item)?);
+        let acted = take(&mut item)?;
+        kept += acted.actions.len();
+        if kept > ACTIONS_KEPT {
+            let problem = "its episodes have more than 20,000,000 actions";
+            return Err(FormatError::document(file, problem, "split it into parts"));
+        }
+        all.insert(episode.to_owned(), acted);
         Ok(())
     })?;
     Ok(all)
@@ -79,6 +89,14 @@ fn take(item: &mut Item<'_>) -> Result<Acted, FormatError> {
     if steps.as_u64() != Some(forward as u64) {
         let problem = format!("expected {forward}, the number of steps forward among the actions, found {steps}");
         return Err(item.wrong("forward_steps", problem, "count the actions that are 1"));
+    }
+    if actions.iter().position(|action| *action == Action::Stop) != actions.len().checked_sub(1) {
+        return Err(item.wrong("actions", "it does not end with its only stop", "the last action is 0, and no other"));
+    }
+    if locations.len() != forward + 1 {
+        let problem =
+            format!("expected {}, the start and one for each step forward, found {}", forward + 1, locations.len());
+        return Err(item.wrong("locations", problem, "write where the agent is at the start and after each action 1"));
     }
     Ok(Acted { actions, locations })
 }
@@ -121,6 +139,11 @@ mod tests {
             (
                 r#"{"7": {"actions": [1, 0], "locations": [], "forward_steps": 2}}"#,
                 "field \"forward_steps\": expected 1",
+            ),
+            (r#"{"7": {"actions": [1], "locations": [], "forward_steps": 1}}"#, "field \"actions\": it does not end"),
+            (
+                r#"{"7": {"actions": [1, 0], "locations": [[0, 0, 0]], "forward_steps": 1}}"#,
+                "field \"locations\": expected 2",
             ),
             (r#"{"7": []}"#, "expected an object"),
             ("[]", "expected"),

@@ -32,7 +32,7 @@ pub enum Item {
 /// When the episodes or their scenes cannot be read, or no item is left.
 pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
     let mut items = match &settings.episodes {
-        Some(file) => episodes(file, settings)?,
+        Some(file) => episodes(file, settings, platform)?,
         None => random(settings, platform)?,
     };
     items.truncate(settings.limit.unwrap_or(usize::MAX));
@@ -47,7 +47,7 @@ pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, 
     Ok(items)
 }
 
-fn episodes(file: &FilePath, settings: &Settings) -> Result<Vec<Item>, Error> {
+fn episodes(file: &FilePath, settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
     let episodes = wayword_formats::read(file)?;
     if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
         let problem = format!("{}: episode {} names no viewpoints, but paths need them", file.display(), blind.id);
@@ -58,7 +58,12 @@ fn episodes(file: &FilePath, settings: &Settings) -> Result<Vec<Item>, Error> {
     }
     let wanted =
         |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
-    Ok(episodes.into_iter().filter(wanted).map(|episode| Item::Episode(Box::new(episode))).collect())
+    // By one name alone, or a scene could come into two splits.
+    let called = |mut episode: Episode| {
+        episode.scene = platform.called(&episode.scene);
+        episode
+    };
+    Ok(episodes.into_iter().filter(wanted).map(called).map(|episode| Item::Episode(Box::new(episode))).collect())
 }
 
 fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
@@ -70,7 +75,7 @@ fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Err
             continue;
         }
         platform.graph(&scene)?;
-        scenes.push(scene);
+        scenes.push(platform.called(&scene));
     }
     if settings.scan.is_empty() {
         scenes = platform.scenes()?;

@@ -38,7 +38,14 @@ impl Scenes {
             "house" => return Ok(Self::houses([width_px, height_px])),
             "habitat" => {
                 let (island, connectivity) = (settings.island, settings.connectivity.clone());
-                let options = HabitatOptions { width_px, height_px, island, connectivity, ..HabitatOptions::default() };
+                let options = HabitatOptions {
+                    width_px,
+                    height_px,
+                    island,
+                    connectivity,
+                    off_graph: true,
+                    ..HabitatOptions::default()
+                };
                 let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
                 Kind::Habitat(HabitatPlatform::open(data, options, Arc::new(crate::output::pass_on))?)
             }

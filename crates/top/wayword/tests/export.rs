@@ -146,7 +146,7 @@ fn vlnce_says_how_habitat_gets_a_generated_house() {
     let arguments = ["export", "--run", "a", "--style", "r2r", "--format", "vlnce", "--out", "a.json", "--json"];
     let ran = building.wayword(&arguments);
     assert_eq!(ran.code, Some(0), "{ran:?}");
-    let needs = "save the house: wayword house --seed 3 --out SCENES/house";
+    let needs = "save the house: wayword house --seed 3 --paths 0 --out SCENES/house";
     assert!(ran.err.contains(needs) && ran.err.contains("scenes_dir"), "{ran:?}");
     assert_eq!(ran.json()["scene_needs"], serde_json::json!([needs]));
     let dataset: Value = serde_json::from_slice(&std::fs::read(building.path("a.json")).unwrap()).unwrap();

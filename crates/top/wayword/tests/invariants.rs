@@ -147,6 +147,7 @@ fn no_crate_is_built_on_one_above_it() {
                 "wayword-metrics",
                 "wayword-navigation",
                 "wayword-remote",
+                "wayword-render",
                 "wayword-robustness",
                 "wayword-synthesis",
                 "wayword-testkit",

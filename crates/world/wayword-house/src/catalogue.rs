@@ -66,7 +66,7 @@ catalogue! {
     Piano "piano" [148 60 122] +- 2 "wood" [Black Brown White];
     Photos "photos" [120 3 150] +- 20 "paper" [Black];
     Tapestry "tapestry" [100 4 160] +- 20 "wool" [Red Blue Green Orange Purple Teal Beige];
-    CoatHooks "coat rack" [100 12 150] +- 10 "wood" [White Brown Wooden Black];
+    CoatHooks "coat hooks" [100 12 150] +- 10 "wood" [White Brown Wooden Black];
     BulletinBoard "bulletin board" [110 3 90] +- 10 "cork" [Wooden];
     ToolBoard "tool rack" [120 6 110] +- 20 "wood" [Wooden];
     GrandfatherClock "grandfather clock" [48 28 202] +- 0 "wood" [Brown Wooden];

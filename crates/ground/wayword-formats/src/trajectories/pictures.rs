@@ -26,15 +26,22 @@ pub fn picture_name(number: usize) -> String {
 pub struct Digest(Sha256);
 
 impl Digest {
+    /// The hash of all pictures of a walk.
+    #[must_use]
+    pub fn of(pictures: &[Vec<u8>]) -> String {
+        let mut digest = Self::default();
+        pictures.iter().for_each(|picture| digest.take(picture));
+        digest.finish()
+    }
+
     /// Takes the next picture.
-    pub fn take(&mut self, picture: &[u8]) {
+    fn take(&mut self, picture: &[u8]) {
         self.0.update((picture.len() as u64).to_le_bytes());
         self.0.update(picture);
     }
 
     /// The hash, in hexadecimal digits.
-    #[must_use]
-    pub fn finish(self) -> String {
+    fn finish(self) -> String {
         self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
@@ -60,9 +67,7 @@ pub fn pictures(folder: &Path, trajectory: &Trajectory) -> Result<Vec<Vec<u8>>, 
             (file, found)
         }
     };
-    let mut digest = Digest::default();
-    pictures.iter().for_each(|picture| digest.take(picture));
-    if pictures.len() != count || digest.finish() != trajectory.sha256 {
+    if pictures.len() != count || Digest::of(&pictures) != trajectory.sha256 {
         let problem = format!("the pictures of walk {} are not those that were written", trajectory.id);
         return Err(FormatError::document(&file, problem, HINT));
     }
@@ -85,7 +90,10 @@ fn sample(file: &Path, key: &str, count: usize) -> io::Result<Vec<Vec<u8>>> {
     for entry in archive.entries()?.take(SHARD_FILES) {
         let entry = entry?;
         let name = entry.path()?.to_string_lossy().into_owned();
-        if found.len() < count && name == format!("{key}.{}", picture_name(found.len())) {
+        if found.len() >= count {
+            break;
+        }
+        if name == format!("{key}.{}", picture_name(found.len())) {
             found.push(bytes(Ok(entry))?);
         }
     }

@@ -11,8 +11,6 @@ fn trajectory(id: &str, pictures: Place) -> Trajectory {
     };
     let sub_instructions = vec![part([0, 9], [0, 1], [0, 2]), part([14, 30], [1, 1], [2, 2])];
     let told = Told { episode_id: id.to_owned(), style: "r2r".to_owned(), text: text.clone(), sub_instructions };
-    let mut digest = Digest::default();
-    views(id).iter().for_each(|picture| digest.take(picture));
     Trajectory {
         id: id.to_owned(),
         platform: "house".to_owned(),
@@ -24,7 +22,7 @@ fn trajectory(id: &str, pictures: Place) -> Trajectory {
         frame_steps: vec![0, 2],
         off_m: 0.125,
         pictures,
-        sha256: digest.finish(),
+        sha256: Digest::of(&views(id)),
         instructions: vec![told],
     }
 }

@@ -20,7 +20,7 @@ pub struct House {
     /// How many houses, with the seeds that follow.
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "run")]
     pub houses: u64,
-    /// Write this many episodes of VLN-CE, with instructions by labels and rules. 0 for none.
+    /// Write this many episodes of VLN-CE, with instructions by labels and rules; 0 for none, as to add houses to a set.
     #[arg(long, value_name = "N", default_value_t = 10, conflicts_with = "run")]
     pub paths: usize,
     /// Instead: the houses of this run, with its instructions as episodes.

@@ -26,6 +26,8 @@ pub(super) struct Home {
     /// Its ground; `None` where it is walked along a graph from a file.
     pub(super) walkable: Option<Walkable>,
     pub(super) graph: Arc<ViewpointGraph>,
+    /// Whether views may be taken off the graph from a file.
+    off_graph: bool,
     pub(super) semantics: Option<Semantics>,
     /// The viewpoints from which each object is seen; computed when first needed.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
@@ -54,7 +56,8 @@ impl Home {
         let scene = Scene::new(model.meshes, model.materials, model.textures);
         let scene = scene.map_err(|error| FileError::new(&stage.asset, error.to_string(), DRAW_HINT))?;
         let (id, graph) = (id.clone(), Arc::new(graph));
-        Ok(Self { id, scene, walkable, graph, semantics, seen_from: OnceLock::new() })
+        let off_graph = options.off_graph;
+        Ok(Self { id, scene, walkable, graph, off_graph, semantics, seen_from: OnceLock::new() })
     }
 
     /// The islands of its navmesh, the largest first.
@@ -127,7 +130,7 @@ impl Home {
         let eye = frame.pose.position;
         let is_there = match &self.walkable {
             Some(walkable) => walkable.is_under(eye),
-            None => graph::passes(&self.graph, eye),
+            None => (self.off_graph && eye.is_finite()) || graph::passes(&self.graph, eye),
         };
         if is_there { Ok(()) } else { Err(PlatformError::nowhere(&self.id, frame)) }
     }

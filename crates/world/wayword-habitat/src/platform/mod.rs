@@ -64,11 +64,21 @@ pub struct HabitatOptions {
     /// A folder of viewpoint graphs in Matterport's format (`SCENE_connectivity.json`). Scenes are then walked along their
     /// graphs, no navmesh is read or baked, and scenes without a graph are left out.
     pub connectivity: Option<PathBuf>,
+    /// Whether views may be taken off these graphs too, as of an agent that walks over the navmesh.
+    pub off_graph: bool,
 }
 
 impl Default for HabitatOptions {
     fn default() -> Self {
-        Self { width_px: 640, height_px: 480, interval_m: 1.0, navmesh: None, island: None, connectivity: None }
+        Self {
+            width_px: 640,
+            height_px: 480,
+            interval_m: 1.0,
+            navmesh: None,
+            island: None,
+            connectivity: None,
+            off_graph: false,
+        }
     }
 }
 
@@ -83,9 +93,12 @@ impl HabitatPlatform {
         let scenes = files::scenes(place)?;
         let pairs = match &options.connectivity {
             Some(folder) => pairs::pair(scenes, folder)?,
-            None => Pairs { scenes, ..Pairs::default() },
+            None => Pairs::alone(scenes),
         };
         let (ready, examined, told) = (Recent::one_at_a_time(READY), Mutex::default(), Mutex::default());
+        if let Some(idle) = pairs.idle() {
+            hear(&idle);
+        }
         Ok(Self { options, hear, pairs, ready, examined, told })
     }
 
@@ -150,6 +163,10 @@ impl Platform for HabitatPlatform {
 
     fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
         Ok(self.pairs.scenes.keys().cloned().collect())
+    }
+
+    fn called(&self, scene: &SceneId) -> SceneId {
+        self.files_of(scene).map_or_else(|_| scene.clone(), |(id, _)| id.clone())
     }
 
     fn candidates(&self) -> Result<Vec<SceneId>, PlatformError> {

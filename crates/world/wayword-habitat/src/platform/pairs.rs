@@ -9,6 +9,8 @@ use std::{
 use wayword_core::{Lack, SceneId};
 use wayword_world::connectivity::ENDING;
 
+/// Graphs without a scene that are named.
+const NAMED: usize = 3;
 const HINT: &str = "give --connectivity the folder with the files SCENE_connectivity.json";
 
 /// Scenes with their graphs.
@@ -17,8 +19,25 @@ pub(super) struct Pairs {
     pub(super) scenes: BTreeMap<SceneId, SceneFiles>,
     /// What is in one of the two folders and cannot be used.
     pub(super) unpaired: BTreeMap<SceneId, Lack>,
+    /// Graphs for which there is no scene, by name. A folder of them usually has many more than there are scenes.
+    idle: Vec<String>,
     /// Other names of scenes, which episodes may use.
     pub(super) others: BTreeMap<SceneId, SceneId>,
+}
+
+impl Pairs {
+    /// Scenes without graphs.
+    pub(super) fn alone(scenes: BTreeMap<SceneId, SceneFiles>) -> Self {
+        Self { scenes, ..Self::default() }
+    }
+
+    /// Says in one line which graphs have no scene, if there are any.
+    pub(super) fn idle(&self) -> Option<String> {
+        let named = self.idle.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if self.idle.len() > NAMED { " ..." } else { "" };
+        (!self.idle.is_empty())
+            .then(|| format!("{} of the graphs have no scene below --data: {named}{more}", self.idle.len()))
+    }
 }
 
 /// Pairs scenes with the graphs of a folder.
@@ -26,7 +45,7 @@ pub(super) struct Pairs {
 /// HM3D's scenes are numbered: the folder `00800-TEEsavR23oF` holds `TEEsavR23oF.basis.glb`, and graphs have either
 /// name. A scene is called by its number where the folder or the graph tells it, because official splits go by it.
 pub(super) fn pair(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Result<Pairs, FileError> {
-    let mut graphs = graphs(folder)?;
+    let graphs = graphs(folder)?;
     let mut taken: BTreeMap<PathBuf, SceneId> = BTreeMap::new();
     let mut pairs = Pairs::default();
     for (id, files) in scenes {
@@ -52,14 +71,7 @@ pub(super) fn pair(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Resu
         taken.insert(graph.clone(), called.clone());
         pairs.scenes.insert(called, SceneFiles { graph: Some(graph), ..files });
     }
-    graphs.retain(|_, file| !taken.contains_key(file));
-    for (name, file) in graphs {
-        if let Ok(id) = SceneId::new(name.as_str())
-            && !pairs.scenes.contains_key(&id)
-        {
-            pairs.unpaired.entry(id).or_insert_with(|| no_scene(&file, &name));
-        }
-    }
+    pairs.idle = graphs.into_iter().filter(|(_, file)| !taken.contains_key(file)).map(|(name, _)| name).collect();
     Ok(pairs)
 }
 
@@ -107,14 +119,6 @@ fn taken_already(files: &SceneFiles, graph: &Path, first: &SceneId) -> Lack {
     Lack {
         what: format!("{}: scene {first} has the graph {} already", files.stage.display(), graph.display()),
         hint: "give --data a folder in which each scene is once".to_owned(),
-    }
-}
-
-fn no_scene(graph: &Path, name: &str) -> Lack {
-    let stem = name.split_once('-').map_or(name, |(_, stem)| stem);
-    Lack {
-        what: format!("{}: there is no scene for this graph", graph.display()),
-        hint: format!("put {name}.glb, or {name}/{stem}.basis.glb of HM3D, below --data"),
     }
 }
 
@@ -168,9 +172,9 @@ mod tests {
         let told = |name: &str| &pairs.unpaired[&SceneId::new(name).unwrap()];
         assert!(told("b").what.contains("b.glb: there is no viewpoint graph for it in"), "{pairs:?}");
         assert!(told("b").hint.contains("put b_connectivity.json there"), "{pairs:?}");
-        assert!(told("c").what.contains("c_connectivity.json: there is no scene for this graph"), "{pairs:?}");
+        assert_eq!(pairs.idle().unwrap(), "1 of the graphs have no scene below --data: c");
         assert!(pairs.unpaired.values().any(|lack| lack.what.contains("has the graph")), "{pairs:?}");
-        assert_eq!(pairs.unpaired.len(), 3);
+        assert_eq!(pairs.unpaired.len(), 2);
     }
 
     #[test]

@@ -18,6 +18,8 @@ const PROGRESS_STEPS: f64 = 0.1;
 const REACH_STEPS: f64 = 3.0;
 /// Two places of the ground whose heights differ by less are on one level, metres.
 const LEVEL_M: f64 = 0.1;
+/// The ground under a place of the walk is at most this far beside it, metres.
+const BESIDE_M: f64 = 0.5;
 /// Most actions of one walk.
 const MOST_ACTIONS: usize = 20_000;
 
@@ -44,6 +46,14 @@ pub enum Astray {
         place: usize,
         /// What is wrong.
         reason: NoWay,
+    },
+    /// The ground nearest to a place lies beside it, so that the walk would lead elsewhere.
+    #[error("place {place} of the walk: the nearest ground is {off_m:.2} m beside it")]
+    Beside {
+        /// Its number, from 0.
+        place: usize,
+        /// How far beside, metres.
+        off_m: f64,
     },
     /// No action leads on.
     #[error("blocked after {actions} actions at ({:.2}, {:.2}, {:.2}), {left_m:.2} m before the end: no step forward stays within {tolerance_m} m of the walk", .at.x, .at.y, .at.z)]
@@ -80,8 +90,11 @@ pub fn follow(
     let first = places.first().copied().unwrap_or_default();
     let off_ground = || Astray::NoWay { place: 0, reason: NoWay::OffGround(first) };
     let start = Stance::new(ground.nearest(first).ok_or_else(off_ground)?, heading);
-    let mut follower = Follower { ground, line: &line, gait, tolerance_m };
-    follower.walk(start, &marks)
+    let follower = Follower { ground, line: &line, gait, tolerance_m };
+    let walked = follower.walk(start, &marks)?;
+    let last = places.last().copied().unwrap_or_default();
+    let end = walked.stances.last().map_or(last, |stance| stance.foothold.place);
+    Ok(Walked { off_m: (end - last).truncate().length(), ..walked })
 }
 
 /// Where an agent is before each of these actions and after the last; `None` for a step that the ground blocked, and
@@ -106,7 +119,9 @@ fn joined(ground: &Ground, places: &[DVec3]) -> Result<(Line, Vec<f64>), Astray>
     let mut marks = Vec::with_capacity(places.len());
     let on_ground = |place: usize| {
         let at = places.get(place).copied().unwrap_or_default();
-        ground.nearest(at).map(|it| it.place).ok_or(Astray::NoWay { place, reason: NoWay::OffGround(at) })
+        let on = ground.nearest(at).ok_or(Astray::NoWay { place, reason: NoWay::OffGround(at) })?.place;
+        let off_m = (on - at).truncate().length();
+        if off_m > BESIDE_M { Err(Astray::Beside { place, off_m }) } else { Ok(on) }
     };
     marks.push(line.push(on_ground(0)?));
     for (number, pair) in places.windows(2).enumerate() {
@@ -128,7 +143,7 @@ struct Follower<'a> {
 }
 
 impl Follower<'_> {
-    fn walk(&mut self, mut now: Stance, marks: &[f64]) -> Result<Walked, Astray> {
+    fn walk(&self, mut now: Stance, marks: &[f64]) -> Result<Walked, Astray> {
         let forward_m = self.gait.forward_m();
         let (mut actions, mut stances, mut reached) = (Vec::new(), Vec::new(), Vec::new());
         let mut along = 0.0;
@@ -155,8 +170,7 @@ impl Follower<'_> {
         reached.resize(marks.len(), actions.len());
         stances.push(now);
         actions.push(Action::Stop);
-        let off_m = (now.foothold.place - self.line.at(self.line.length_m())).truncate().length();
-        Ok(Walked { actions, stances, reached, off_m })
+        Ok(Walked { actions, stances, reached, off_m: 0.0 })
     }
 
     /// The turns before the next step forward, and how far along the line that step ends. Of two that are as good, the

@@ -4,7 +4,7 @@
 use super::{
     super::{
         colour::Colour,
-        surface::{Pattern, Surface},
+        surface::{ART_COUNT, Pattern, Surface},
     },
     Shape,
 };
@@ -189,7 +189,7 @@ fn candles(shape: &mut Shape, at: Vec3) {
 fn photo(shape: &mut Shape, at: Vec3, mixed: usize) {
     let frame = Surface::wood([Colour::Black, Colour::White, Colour::Gold, Colour::Wooden][mixed % 4]);
     shape.block(frame, [at.x - 0.075, at.x + 0.075], [at.y, at.y + 0.014], [at.z, at.z + 0.2]);
-    let picture = Surface::picture(Pattern::Art((mixed % 6) as u8));
+    let picture = Surface::picture(Pattern::Art(mixed as u8 % ART_COUNT));
     shape.picture(picture, at + Vec3::new(-0.06, -0.002, 0.016), Vec3::X * 0.12, Vec3::Z * 0.168);
 }
 

@@ -115,7 +115,7 @@ fn house(scene: &SceneId) -> InHabitat {
     let seed = seed_of(scene.as_str()).unwrap_or_default();
     InHabitat {
         scene_id: Some(format!("house/{scene}/{scene}.glb")),
-        scene_needs: Some(format!("save the house: wayword house --seed {seed} --out SCENES/house")),
+        scene_needs: Some(format!("save the house: wayword house --seed {seed} --paths 0 --out SCENES/house")),
         geodesic_m: None,
     }
 }

@@ -1,10 +1,10 @@
 //! Records as items of the field's formats.
 
 use super::in_habitat::World;
-use crate::{cli::ExportFormat, error::Error, output::Output};
+use crate::{cli::ExportFormat, error::Error, output::Output, run::name_of_text};
 use serde_json::{Value, json};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 use wayword_core::ObjectId;
@@ -68,6 +68,26 @@ pub(in super::super) fn write(
         .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": about(record)}))
         .collect();
     Ok(Some(write_sidecar(file, &lines)?))
+}
+
+/// A name for the episode of each record, in their order: that of its path, and where a path has several texts also the
+/// style and the number of the text.
+pub(in super::super) fn episode_names(records: &[Record]) -> Vec<String> {
+    let mut texts: BTreeMap<&str, usize> = BTreeMap::new();
+    for record in records {
+        *texts.entry(&record.path.id).or_default() += 1;
+    }
+    let mut taken = BTreeSet::new();
+    let name = |record: &Record| match texts.get(record.path.id.as_str()) {
+        Some(1) => record.path.id.clone(),
+        _ => format!("{}-{}", record.path.id, name_of_text(record)),
+    };
+    let free = |name: String| {
+        let other = (2..).map(|number| format!("{name}_{number}"));
+        let found = std::iter::once(name.clone()).chain(other).find(|name| taken.insert(name.clone()));
+        found.unwrap_or(name)
+    };
+    records.iter().map(name).map(free).collect()
 }
 
 /// Refuses recordings without poses, because all of the field's formats say where the agent stands and looks.

@@ -4,7 +4,7 @@ use super::{Episodes, SCENE_SET};
 use crate::{
     cli::House,
     commands::{export::items, generate_into},
-    error::Error,
+    error::{Error, Exit},
     output::Output,
     run::file,
     settings::{Asked, Draw, Walks, Writing},
@@ -33,8 +33,9 @@ const PICTURE_PX: [u32; 2] = [224, 224];
 /// habitat-lab's configuration.
 const CONFIG: &str = "vln.yaml";
 
-/// Instructions for random paths through the houses, by labels and rules: a run in the folder `run`.
-pub(super) fn made(args: &House, seeds: &[u64], output: &Output) -> Result<Vec<Record>, Error> {
+/// Instructions for random paths through the houses, by labels and rules: a run in the folder `run`. What is lost of them is
+/// said.
+pub(super) fn made(args: &House, seeds: &[u64], output: &Output) -> Result<(Vec<Record>, Exit), Error> {
     let scan = seeds.iter().map(|seed| scene_name(*seed)).collect();
     let asked = Asked {
         walks: Walks { scan: Some(scan), paths: Some(args.paths), ..Walks::default() },
@@ -47,17 +48,21 @@ pub(super) fn made(args: &House, seeds: &[u64], output: &Output) -> Result<Vec<R
     };
     let folder = args.out.join(RUN);
     let summary = generate_into(&folder, &asked.job()?, output)?;
-    if let Some(reason) = &summary.stopped {
-        return Err(Error::usage(format!("stopped before the end: {reason}"), "give the same command again"));
+    if summary.exit != Exit::Done {
+        output.say(&summary);
     }
-    Ok(jsonl::read(&folder.join(file::INSTRUCTIONS))?)
+    Ok((jsonl::read(&folder.join(file::INSTRUCTIONS))?, summary.exit))
 }
 
 /// Writes the episodes of records, what an agent does in each, and habitat-lab's configuration.
 pub(super) fn write(out: &Path, records: &[Record], output: &Output) -> Result<Episodes, Error> {
     let scenes = Scenes::houses(PICTURE_PX);
     let (mut kept, mut episodes, mut acted, mut failed) = (Vec::new(), Vec::new(), BTreeMap::new(), Vec::new());
-    for (record, episode) in records.iter().zip(items::episodes(Format::Vlnce, &[], records, output)) {
+    let names = items::episode_names(records);
+    for ((record, mut episode), name) in
+        records.iter().zip(items::episodes(Format::Vlnce, &[], records, output)).zip(names)
+    {
+        episode.id = name;
         match taken(record, &scenes)? {
             Ok(actions) => {
                 acted.insert(episode.id.clone(), actions);

@@ -7,8 +7,9 @@ use crate::{
     cli::House,
     count::count,
     error::{Error, Exit},
+    interrupt,
     output::Output,
-    run::file,
+    run::{file, hold},
 };
 use serde::Serialize;
 use std::{
@@ -21,6 +22,9 @@ use wayword_house::{Saved, generate, save, scene_name, seed_of};
 
 /// The set of scenes, which programs give to Habitat as its scene dataset.
 const SCENE_SET: &str = "houses.scene_dataset_config.json";
+
+/// Most houses of one set.
+const MOST_HOUSES: u64 = 100_000;
 
 /// What was written.
 #[derive(Debug, Serialize)]
@@ -47,32 +51,50 @@ struct Episodes {
 }
 
 pub(super) fn run(args: &House, output: &Output) -> Result<Exit, Error> {
-    let told = args.run.as_deref().map(|run| records(run, args.style.as_deref())).transpose()?;
-    let seeds = match &told {
+    let given = args.run.as_deref().map(|run| records(run, args.style.as_deref())).transpose()?;
+    let seeds = match &given {
         Some(records) => seeds_of(records)?,
-        None => (args.seed..args.seed.saturating_add(args.houses)).collect(),
+        None => seeds(args)?,
     };
-    if seeds.is_empty() {
-        return Err(Error::usage("--houses 0", "give the number of houses, as in --houses 20"));
+    fs::create_dir_all(&args.out).map_err(Error::io(&args.out, "make the folder"))?;
+    let _held = hold(&args.out)?;
+    // The texts first: a run that cannot go on is told before the houses are made.
+    let (told, exit) = match given {
+        Some(records) => (Some(records), Exit::Done),
+        None => made(args, &seeds, output)?,
+    };
+    if matches!(exit, Exit::Interrupted | Exit::Stopped | Exit::Lost) {
+        return Ok(exit);
     }
     let bar = output.progress(seeds.len(), "houses");
     let mut houses = Vec::with_capacity(seeds.len());
     for seed in &seeds {
+        interrupt::check()?;
         houses.push(house(*seed, &args.out)?);
         bar.inc(1);
     }
     bar.finish_and_clear();
     let scene_set = args.out.join(SCENE_SET);
-    let set = serde_json::json!({ "stages": { "paths": { ".json": [format!("{}*", scene_name(0).trim_end_matches('0'))] } } });
+    let folders = format!("{}*", scene_name(0).trim_end_matches('0'));
+    let set = serde_json::json!({ "stages": { "paths": { ".json": [folders] } } });
     fs::write(&scene_set, format!("{set:#}\n")).map_err(Error::io(&scene_set, "write"))?;
-    let episodes = episodes(args, &seeds, told, output)?;
+    let episodes = told.map(|records| written(&args.out, &records, output)).transpose()?.flatten();
+    let has_loss = episodes.as_ref().is_some_and(|episodes| !episodes.failed.is_empty());
     let written = Written { houses, scene_set, episodes };
     output.data(&written, text(&written, &args.out));
-    Ok(if written.episodes.as_ref().is_some_and(|episodes| !episodes.failed.is_empty()) {
-        Exit::WithLoss
-    } else {
-        Exit::Done
-    })
+    Ok(if has_loss { Exit::WithLoss } else { exit })
+}
+
+/// The seeds that the user asks for.
+fn seeds(args: &House) -> Result<Vec<u64>, Error> {
+    if !(1..=MOST_HOUSES).contains(&args.houses) {
+        let hint = format!("give the number of houses, from 1 to {MOST_HOUSES}, as in --houses 20");
+        return Err(Error::usage(format!("--houses {}", args.houses), hint));
+    }
+    let last = args.seed.checked_add(args.houses - 1).ok_or_else(|| {
+        Error::usage(format!("--seed {}: there are not so many seeds after it", args.seed), "give a lower --seed")
+    })?;
+    Ok((args.seed..=last).collect())
 }
 
 /// Writes the files of a house into a folder of its own.
@@ -124,31 +146,31 @@ fn seeds_of(records: &[Record]) -> Result<Vec<u64>, Error> {
     Ok(seeds.collect::<Result<BTreeSet<_>, _>>()?.into_iter().collect())
 }
 
+/// Instructions for random paths through the houses, if any are asked for, and how making them went.
 #[cfg(feature = "habitat")]
-fn episodes(
-    args: &House,
-    seeds: &[u64],
-    told: Option<Vec<Record>>,
-    output: &Output,
-) -> Result<Option<Episodes>, Error> {
-    let records = match told {
-        Some(records) => records,
-        None if args.paths == 0 => return Ok(None),
-        None => episodes::made(args, seeds, output)?,
-    };
-    episodes::write(&args.out, &records, output).map(Some)
+fn made(args: &House, seeds: &[u64], output: &Output) -> Result<(Option<Vec<Record>>, Exit), Error> {
+    if args.paths == 0 {
+        return Ok((None, Exit::Done));
+    }
+    episodes::made(args, seeds, output).map(|(records, exit)| (Some(records), exit))
 }
 
 #[cfg(not(feature = "habitat"))]
-fn episodes(
-    args: &House,
-    _seeds: &[u64],
-    told: Option<Vec<Record>>,
-    output: &Output,
-) -> Result<Option<Episodes>, Error> {
-    if told.is_some() || args.paths > 0 {
+fn made(args: &House, _seeds: &[u64], output: &Output) -> Result<(Option<Vec<Record>>, Exit), Error> {
+    if args.paths > 0 {
         output.say("no navmeshes and no episodes are written, because this build has no platform habitat");
     }
+    Ok((None, Exit::Done))
+}
+
+#[cfg(feature = "habitat")]
+fn written(out: &Path, records: &[Record], output: &Output) -> Result<Option<Episodes>, Error> {
+    episodes::write(out, records, output).map(Some)
+}
+
+#[cfg(not(feature = "habitat"))]
+fn written(_out: &Path, _records: &[Record], output: &Output) -> Result<Option<Episodes>, Error> {
+    output.say("no episodes are written, because this build has no platform habitat");
     Ok(None)
 }
 

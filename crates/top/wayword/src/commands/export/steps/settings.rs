@@ -7,6 +7,9 @@ use wayword_habitat::walk::Gait;
 /// Sides of pictures, pixels.
 const SIDE_PX: std::ops::RangeInclusive<u32> = 16..=4096;
 
+/// Most walks in a shard: the pictures of a shard are in memory before it is written.
+const MOST_IN_SHARD: usize = 500;
+
 /// How walks are taken, and what the agent sees.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -62,8 +65,9 @@ impl Steps {
         within("--tolerance-m", self.tolerance_m, 0.05, 2.0)?;
         within("--fov-deg", self.fov_deg, 10.0, 140.0)?;
         within("--eye-m", self.eye_m, 0.1, 2.2)?;
-        if self.shard == Some(0) {
-            return Err(Error::usage("--shard 0", "give the number of walks in a shard, as in --shard 100"));
+        if let Some(shard) = self.shard.filter(|shard| !(1..=MOST_IN_SHARD).contains(shard)) {
+            let hint = format!("give the number of walks in a shard, from 1 to {MOST_IN_SHARD}, as in --shard 100");
+            return Err(Error::usage(format!("--shard {shard}"), hint));
         }
         Ok(())
     }

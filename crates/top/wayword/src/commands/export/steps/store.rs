@@ -7,6 +7,7 @@ use super::{
 };
 use crate::{
     error::Error,
+    interrupt,
     pictures::jpeg,
     run::{FailedItem, Journal, file},
     walking::Scenes,
@@ -17,6 +18,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
 };
+use wayword_core::Failure;
 use wayword_formats::trajectories::{Digest, Place, Shard, Trajectory, line, picture_name};
 
 /// The file of trajectories.
@@ -109,9 +111,19 @@ impl Maker<'_> {
         if begun.iter().all(|(number, _)| is_done(number)) {
             return Ok(made);
         }
+        let mut ready = Vec::with_capacity(begun.len());
+        for (number, trajectory) in begun {
+            interrupt::check()?;
+            match self.pictures(&trajectory) {
+                Ok(pictures) => ready.push((number, trajectory, pictures)),
+                Err(error) => made.failed.push(failed(&trajectory, error)?),
+            }
+        }
         made.taken = match self.steps.shard {
-            Some(of) => self.write_shard(begun, of)?,
-            None => begun.into_iter().map(|(_, walk)| self.write_folder(walk)).collect::<Result<_, _>>()?,
+            Some(of) => self.write_shard(ready, of)?,
+            None => {
+                ready.into_iter().map(|(_, walk, shown)| self.write_folder(walk, &shown)).collect::<Result<_, _>>()?
+            }
         };
         Ok(made)
     }
@@ -123,7 +135,12 @@ impl Maker<'_> {
         }
     }
 
-    fn write_folder(&self, mut trajectory: Trajectory) -> Result<Trajectory, Error> {
+    /// What the agent sees before each action.
+    fn pictures(&self, trajectory: &Trajectory) -> Result<Vec<Vec<u8>>, Error> {
+        (0..trajectory.actions.len()).map(|number| picture(self.scenes, self.steps, trajectory, number)).collect()
+    }
+
+    fn write_folder(&self, mut trajectory: Trajectory, pictures: &[Vec<u8>]) -> Result<Trajectory, Error> {
         let Place::Folder(images) = &trajectory.pictures else { return Ok(trajectory) };
         let whole = self.folder.join(images);
         let begun = self.folder.join(IMAGES).join(format!(".{}.part", trajectory.id));
@@ -133,37 +150,40 @@ impl Maker<'_> {
             }
         }
         fs::create_dir_all(&begun).map_err(Error::io(&begun, "make the folder"))?;
-        let mut digest = Digest::default();
-        for number in 0..trajectory.actions.len() {
-            let picture = picture(self.scenes, self.steps, &trajectory, number)?;
-            digest.take(&picture);
+        for (number, picture) in pictures.iter().enumerate() {
             let file = begun.join(picture_name(number));
-            fs::write(&file, &picture).map_err(Error::io(&file, "write"))?;
+            fs::write(&file, picture).map_err(Error::io(&file, "write"))?;
         }
         fs::rename(&begun, &whole).map_err(Error::io(&whole, "name"))?;
-        trajectory.sha256 = digest.finish();
+        trajectory.sha256 = Digest::of(pictures);
         Ok(trajectory)
     }
 
-    fn write_shard(&self, walks: Vec<(usize, Trajectory)>, of: usize) -> Result<Vec<Trajectory>, Error> {
-        let Some((first, _)) = walks.first() else { return Ok(Vec::new()) };
+    fn write_shard(&self, walks: Vec<(usize, Trajectory, Vec<Vec<u8>>)>, of: usize) -> Result<Vec<Trajectory>, Error> {
+        let Some((first, ..)) = walks.first() else { return Ok(Vec::new()) };
         let file = self.folder.join(shard_of(*first, of));
         let folder = self.folder.join(SHARDS);
         fs::create_dir_all(&folder).map_err(Error::io(&folder, "make the folder"))?;
         let mut shard = Shard::begin(&file).map_err(Error::io(&file, "write"))?;
         let mut taken = Vec::with_capacity(walks.len());
-        for (number, mut trajectory) in walks {
-            let pictures =
-                (0..trajectory.actions.len()).map(|number| picture(self.scenes, self.steps, &trajectory, number));
-            let pictures = pictures.collect::<Result<Vec<_>, Error>>()?;
-            let mut digest = Digest::default();
-            pictures.iter().for_each(|picture| digest.take(picture));
-            trajectory.sha256 = digest.finish();
+        for (number, mut trajectory, pictures) in walks {
+            trajectory.sha256 = Digest::of(&pictures);
             shard.add(&format!("{number:06}"), &trajectory, &pictures).map_err(Error::io(&file, "write"))?;
             taken.push(trajectory);
         }
         shard.finish().map_err(Error::io(&file, "write"))?;
         Ok(taken)
+    }
+}
+
+/// The walk as one that failed, where the failure is its own.
+fn failed(trajectory: &Trajectory, error: Error) -> Result<FailedItem, Error> {
+    match error {
+        Error::Platform(error) if error.failure() != Failure::Lost => {
+            let (item, failure) = (trajectory.id.clone(), error.failure());
+            Ok(FailedItem { item, failure, reason: error.to_string() })
+        }
+        other => Err(other),
     }
 }
 

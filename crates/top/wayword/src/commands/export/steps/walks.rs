@@ -1,9 +1,9 @@
 //! The walks of a run's records, in single actions.
 
-use super::{parts::parts, settings::Steps};
+use super::{super::items, parts::parts, settings::Steps};
 use crate::{
     error::Error,
-    run::{FailedItem, name_of_text},
+    run::FailedItem,
     walking::{Scenes, feet},
 };
 use std::collections::BTreeMap;
@@ -26,20 +26,13 @@ pub(super) struct Walk<'a> {
 pub(super) fn walks<'a>(records: &'a [Record], splits: &'a [String]) -> Vec<Walk<'a>> {
     let mut walks: Vec<Walk<'a>> = Vec::new();
     let mut places: BTreeMap<&str, usize> = BTreeMap::new();
-    for (record, split) in records.iter().zip(splits) {
+    for ((record, split), name) in records.iter().zip(splits).zip(items::episode_names(records)) {
         let path = &record.path;
         let at = *places.entry(path.id.as_str()).or_insert_with(|| {
             walks.push(Walk { path, split, texts: Vec::new() });
             walks.len() - 1
         });
-        walks[at].texts.push((path.id.clone(), record));
-    }
-    for walk in &mut walks {
-        if walk.texts.len() > 1 {
-            for (episode, record) in &mut walk.texts {
-                *episode = format!("{}-{}", walk.path.id, name_of_text(record));
-            }
-        }
+        walks[at].texts.push((name, record));
     }
     // Walks through a scene one after the other, so that it is prepared once.
     walks.sort_by(|a, b| a.path.scene.cmp(&b.path.scene));
