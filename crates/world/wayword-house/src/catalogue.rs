@@ -120,7 +120,7 @@ catalogue! {
     Car "car" [178 400 146] +- 0 "metal" [Red Blue Silver White Green];
     Workbench "workbench" [150 60 92] +- 10 "wood" [Wooden Brown];
     MetalShelf "metal shelf" [110 45 180] +- 10 "metal" [Grey Silver];
-    ClosetDoor "closet door" [160 6 212] +- 0 "wood" [White Wooden Brown Grey];
+    ClosetDoor "wardrobe" [160 6 212] +- 0 "wood" [White Wooden Brown Grey];
     WallBookshelf "bookshelf" [120 10 208] +- 0 "wood" [White Brown Wooden Black];
     Radiator "radiator" [100 9 58] +- 0 "metal" [White];
     Bicycle "bicycle" [168 50 104] +- 0 "metal" [Red Blue Green Black];
