@@ -19,7 +19,7 @@ pub(crate) struct Scenes {
 
 enum Kind {
     Houses(HousePlatform),
-    Habitat(HabitatPlatform),
+    Habitat(Box<HabitatPlatform>),
 }
 
 impl Scenes {
@@ -47,7 +47,7 @@ impl Scenes {
                     ..HabitatOptions::default()
                 };
                 let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
-                Kind::Habitat(HabitatPlatform::open(data, options, Arc::new(crate::output::pass_on))?)
+                Kind::Habitat(Box::new(HabitatPlatform::open(data, options, Arc::new(crate::output::pass_on))?))
             }
             other => {
                 let problem = format!("platform {other} has no ground on which single steps can be taken");
@@ -63,7 +63,7 @@ impl Scenes {
     pub(crate) fn platform(&self) -> &dyn Platform {
         match &self.kind {
             Kind::Houses(houses) => houses,
-            Kind::Habitat(scenes) => scenes,
+            Kind::Habitat(scenes) => scenes.as_ref(),
         }
     }
 

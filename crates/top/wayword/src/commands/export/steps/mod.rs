@@ -80,7 +80,7 @@ fn take(walks: &[Walk<'_>], maker: &Maker<'_>, store: &mut Store, output: &Outpu
         maker.make(walks, unit)
     };
     let kept = in_order(&units, cores(), made, |unit, made| {
-        store.keep(made?)?;
+        store.keep(&made?)?;
         bar.inc(unit.len() as u64);
         Ok::<bool, Error>(true)
     });

@@ -55,7 +55,7 @@ impl Store {
         self.trajectories.keys().map(str::to_owned).collect()
     }
 
-    pub(super) fn keep(&mut self, made: Made) -> Result<(), Error> {
+    pub(super) fn keep(&mut self, made: &Made) -> Result<(), Error> {
         made.taken.iter().try_for_each(|taken| self.trajectories.append(&line(taken)))?;
         made.failed.iter().try_for_each(|failed| self.errors.append(failed))
     }
