@@ -1,10 +1,10 @@
 //! Records as items of the field's formats.
 
 use super::in_habitat::World;
-use crate::{cli::ExportFormat, error::Error, output::Output, run::name_of_text};
+use crate::{cli::ExportFormat, error::Error, output::Output};
 use serde_json::{Value, json};
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeMap,
     path::{Path, PathBuf},
 };
 use wayword_core::ObjectId;
@@ -72,15 +72,16 @@ pub(in super::super) fn write(
 
 /// A name for the episode of each record, in their order: that of its path, and where a path has several texts also the
 /// style and the number of the text.
+#[cfg(feature = "habitat")]
 pub(in super::super) fn episode_names(records: &[Record]) -> Vec<String> {
     let mut texts: BTreeMap<&str, usize> = BTreeMap::new();
     for record in records {
         *texts.entry(&record.path.id).or_default() += 1;
     }
-    let mut taken = BTreeSet::new();
+    let mut taken = std::collections::BTreeSet::new();
     let name = |record: &Record| match texts.get(record.path.id.as_str()) {
         Some(1) => record.path.id.clone(),
-        _ => format!("{}-{}", record.path.id, name_of_text(record)),
+        _ => format!("{}-{}", record.path.id, crate::run::name_of_text(record)),
     };
     let free = |name: String| {
         let other = (2..).map(|number| format!("{name}_{number}"));
