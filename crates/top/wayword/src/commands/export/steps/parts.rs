@@ -12,8 +12,8 @@ const BETWEEN: [&str; 3] = ["and", "then", "or"];
 #[derive(Debug, Clone, Copy)]
 struct Part {
     span: [usize; 2],
-    /// The first and the last frame that its words speak of; a turn is over one frame later.
-    frames: [usize; 2],
+    /// The last frame that its words speak of; a turn is over one frame later.
+    end: usize,
     /// Whether it begins with its turn.
     turns_at: Option<usize>,
 }
@@ -53,11 +53,10 @@ fn part(instruction: &Instruction, span: [usize; 2], last: usize) -> Option<Part
     let over = |mention: &wayword_core::Mention| {
         if mention.kind == MentionKind::Turn { (mention.frame + 1).min(last) } else { mention.frame.min(last) }
     };
-    let first = told.iter().map(|mention| mention.frame.min(last)).min()?;
     let end = told.iter().map(|mention| over(mention)).max()?;
     let opening = told.iter().min_by_key(|mention| mention.span[0]);
     let turns_at = opening.filter(|mention| mention.kind == MentionKind::Turn).map(|mention| mention.frame.min(last));
-    Some(Part { span, frames: [first, end], turns_at })
+    Some(Part { span, end, turns_at })
 }
 
 /// The frame at which each part ends: where the next part's turn is made, or else the last frame that its words speak
@@ -68,7 +67,7 @@ fn ends(parts: &[Part], last: usize) -> Vec<usize> {
     for (number, part) in parts.iter().enumerate() {
         let end = match parts.get(number + 1) {
             None => last,
-            Some(next) => next.turns_at.unwrap_or(part.frames[1]),
+            Some(next) => next.turns_at.unwrap_or(part.end),
         };
         before = end.max(before);
         ends.push(before);

@@ -5,7 +5,7 @@ use super::{settings::Steps, store::picture};
 use crate::{
     error::Error,
     run::{config_of, file, settings_of},
-    walking::Scenes,
+    walking::{Scenes, feet},
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, path::Path};
@@ -14,10 +14,7 @@ use wayword_formats::{
     jsonl,
     trajectories::{Trajectory, pictures, read},
 };
-use wayword_habitat::{
-    axes::EYE_M,
-    walk::{Stance, replay},
-};
+use wayword_habitat::walk::{Stance, replay};
 
 /// A pose that is farther from the one that was written is another, metres.
 const SAME_M: f64 = 0.001;
@@ -46,7 +43,7 @@ pub fn replayed(folder: &Path, run: &Path, every: usize) -> Result<Replayed, Err
     let scenes = Scenes::open(&settings_of(run)?, [steps.width_px, steps.height_px])?;
     let ends: BTreeMap<String, DVec3> = jsonl::read(&run.join(file::INSTRUCTIONS))?
         .into_iter()
-        .filter_map(|record| Some((record.path.id, record.path.frames.last()?.pose.position - DVec3::Z * EYE_M)))
+        .filter_map(|record| feet(&record.path).last().map(|end| (record.path.id, *end)))
         .collect();
     let mut told = Replayed::default();
     for trajectory in read(&folder.join(super::store::TRAJECTORIES))? {
