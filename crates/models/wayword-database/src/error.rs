@@ -1,0 +1,141 @@
+//! Errors of a database.
+
+use postgres::error::SqlState;
+use std::path::PathBuf;
+
+/// A database cannot be used. No text holds a password.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum DatabaseError {
+    /// The name says no database.
+    #[error("this names no database: {problem}\nhint: {hint}")]
+    Name {
+        /// What is wrong with it.
+        problem: String,
+        /// What to write instead.
+        hint: &'static str,
+    },
+    /// A file that the connection needs cannot be used.
+    #[error("{}: {problem}\nhint: {hint}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// The server is too old.
+    #[error("{database}: this server is PostgreSQL {version}\nhint: use PostgreSQL 15 or later")]
+    TooOld {
+        /// The database.
+        database: String,
+        /// The server's version.
+        version: String,
+    },
+    /// A newer version of the program made the tables.
+    #[error(
+        "{database}: a newer version of this program made the tables of {schema} (version {version})\nhint: use that version, or another database"
+    )]
+    Newer {
+        /// The database.
+        database: String,
+        /// Whose tables.
+        schema: &'static str,
+        /// Their version.
+        version: i32,
+    },
+    /// The tables have to be made, and this role may not.
+    #[error(
+        "{database}: the tables of {schema} are missing or old, and this role may not make them ({reason})\nhint: let the owner of the database run `wayword runs database DATABASE --sql` and apply what it prints"
+    )]
+    Rights {
+        /// The database.
+        database: String,
+        /// Whose tables.
+        schema: &'static str,
+        /// What the server said.
+        reason: String,
+    },
+    /// The server does not answer, or refuses.
+    #[error("{database}: cannot {doing}: {reason}\nhint: {hint}")]
+    Server {
+        /// The database.
+        database: String,
+        /// What was tried.
+        doing: &'static str,
+        /// What the server or the system said.
+        reason: String,
+        /// What to do.
+        hint: &'static str,
+        /// Whether the server or the way to it failed, so that the same may work later.
+        is_lost: bool,
+    },
+}
+
+impl DatabaseError {
+    /// Whether the server or the way to it failed, so that the same may work later.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Server { is_lost: true, .. })
+    }
+
+    pub(crate) fn server(database: &str, doing: &'static str, error: &postgres::Error) -> Self {
+        let is_lost = is_lost(error);
+        let told = error.as_db_error().map(|told| format!("{} ({})", told.message(), told.code().code()));
+        let reason = told.unwrap_or_else(|| with_causes(error));
+        Self::Server { database: database.to_owned(), doing, reason, hint: hint(error, is_lost), is_lost }
+    }
+}
+
+/// Whether an error is of the server or the way to it, not of the statement. Conflicts with other programs count too: the
+/// same statement works when it is sent again.
+pub(crate) fn is_lost(error: &postgres::Error) -> bool {
+    let Some(code) = error.code() else {
+        // An error without a code comes from the connection, unless a value could not be converted.
+        return error.is_closed() || std::error::Error::source(error).is_some_and(|cause| cause.is::<std::io::Error>());
+    };
+    let again = [
+        SqlState::ADMIN_SHUTDOWN,
+        SqlState::CRASH_SHUTDOWN,
+        SqlState::CANNOT_CONNECT_NOW,
+        SqlState::TOO_MANY_CONNECTIONS,
+        SqlState::T_R_SERIALIZATION_FAILURE,
+        SqlState::T_R_DEADLOCK_DETECTED,
+        SqlState::DISK_FULL,
+        SqlState::QUERY_CANCELED,
+        SqlState::IDLE_IN_TRANSACTION_SESSION_TIMEOUT,
+    ];
+    again.contains(code) || code.code().starts_with("08")
+}
+
+fn with_causes(error: &postgres::Error) -> String {
+    let mut told = error.to_string();
+    let mut cause = std::error::Error::source(error);
+    while let Some(next) = cause {
+        let text = next.to_string();
+        if !told.contains(&text) {
+            told.push_str(": ");
+            told.push_str(&text);
+        }
+        cause = next.source();
+    }
+    told
+}
+
+fn hint(error: &postgres::Error, is_lost: bool) -> &'static str {
+    match error.code() {
+        Some(code) if *code == SqlState::INVALID_PASSWORD || *code == SqlState::INVALID_AUTHORIZATION_SPECIFICATION => {
+            "check the user's name, and the password in PGPASSFILE or in the variable of --password-env"
+        }
+        Some(code) if *code == SqlState::UNDEFINED_DATABASE => "make it with `createdb`, or name another one",
+        Some(code) if *code == SqlState::INSUFFICIENT_PRIVILEGE => {
+            "give the role the rights that `wayword runs database DATABASE --sql` prints"
+        }
+        Some(code) if *code == SqlState::TOO_MANY_CONNECTIONS => {
+            "raise max_connections of the server, or start fewer workers"
+        }
+        Some(code) if *code == SqlState::DISK_FULL => "make room on the server's disk, and give the same command again",
+        _ if is_lost => "check that the server runs and can be reached from here, and give the same command again",
+        _ => "check the database's name, and that this program's tables were not changed by hand",
+    }
+}

@@ -1,0 +1,204 @@
+//! How a database is named, and the way to it.
+
+use crate::{DatabaseError, error::is_lost, password, tls};
+use postgres::{
+    Client, Config, NoTls,
+    config::{Host, SslMode},
+};
+use std::{env, fmt, path::Path, str::FromStr, time::Duration};
+
+/// A database, as a user names it.
+#[derive(Clone)]
+pub struct Database {
+    config: Config,
+    shown: String,
+    password_env: Option<String>,
+}
+
+/// Where a server on this machine listens.
+const SOCKET_FOLDERS: [&str; 2] = ["/var/run/postgresql", "/tmp"];
+const PORT: u16 = 5432;
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// What every connection asks of the server: a statement or a transaction that hangs does not hold up the other workers.
+const OPTIONS: &str = "-c statement_timeout=60s -c idle_in_transaction_session_timeout=60s -c lock_timeout=60s";
+
+const HOW: &str = "write the name of a database, or postgresql://USER@HOST:PORT/DATABASE";
+const NO_PASSWORD: &str = "leave the password out: put it into a file (PGPASSFILE, by default ~/.pgpass), or into an environment variable that you name with --password-env";
+
+impl Database {
+    /// A database by its name: `wayword_db`, `postgresql://user@host:5432/wayword_db` or `host=... dbname=...`. What the
+    /// text leaves out comes from PGHOST, PGPORT, PGUSER and PGSSLMODE, as with PostgreSQL's own programs.
+    ///
+    /// The certificate of a server on another machine is always checked (PGSSLROOTCERT names its authority), unless
+    /// `sslmode=disable` is asked for. On this machine there is no TLS unless it is asked for.
+    ///
+    /// # Errors
+    /// When the text names no database, or holds a password.
+    pub fn named(text: &str, password_env: Option<&str>) -> Result<Self, DatabaseError> {
+        let wrong = |problem: &str, hint| Err(DatabaseError::Name { problem: problem.to_owned(), hint });
+        if text.trim().is_empty() {
+            return wrong("it is empty", HOW);
+        }
+        let mut config = if text.contains("://") || text.contains('=') {
+            // This program checks certificates and the server's name always, so "require" means the same.
+            let text = ["verify-full", "verify-ca"]
+                .iter()
+                .fold(text.to_owned(), |text, mode| text.replace(&format!("sslmode={mode}"), "sslmode=require"));
+            match Config::from_str(&text) {
+                Ok(config) => config,
+                // The parser quotes what it cannot read, and that may be a password.
+                Err(_) => return wrong("it cannot be read", HOW),
+            }
+        } else {
+            let mut config = Config::new();
+            config.dbname(text);
+            config
+        };
+        if config.get_password().is_some() {
+            return wrong("it holds a password, which lists of processes and logs would show", NO_PASSWORD);
+        }
+        if config.get_dbname().is_none() {
+            return wrong("it has no name of a database", HOW);
+        }
+        complete(&mut config, text)?;
+        let shown = shown(&config);
+        Ok(Self { config, shown, password_env: password_env.map(str::to_owned) })
+    }
+
+    /// Its name for messages: user, host, port and database.
+    #[must_use]
+    pub fn shown(&self) -> &str {
+        &self.shown
+    }
+
+    /// Connects.
+    ///
+    /// # Errors
+    /// When the password cannot be found out, the server does not answer or refuses, or its certificate is not trusted.
+    pub fn connect(&self) -> Result<Client, DatabaseError> {
+        let mut config = self.config.clone();
+        if let Some(password) = password::find(&config, self.password_env.as_deref())? {
+            config.password(password);
+        }
+        let connected = match config.get_ssl_mode() {
+            SslMode::Disable => config.connect(NoTls),
+            _ => config.connect(tls::connector()?),
+        };
+        connected.map_err(|error| {
+            let told = DatabaseError::server(&self.shown, "connect", &error);
+            // Nothing was asked yet, so an error without a code is of the way to the server.
+            match told {
+                DatabaseError::Server { database, doing, reason, hint, .. } => DatabaseError::Server {
+                    database,
+                    doing,
+                    reason,
+                    hint,
+                    is_lost: error.code().is_none() || is_lost(&error),
+                },
+                other => other,
+            }
+        })
+    }
+}
+
+impl fmt::Debug for Database {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Database").field(&self.shown).finish()
+    }
+}
+
+/// Fills in what the text leaves out.
+fn complete(config: &mut Config, text: &str) -> Result<(), DatabaseError> {
+    let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
+    if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {
+        let socket = SOCKET_FOLDERS.iter().find(|folder| Path::new(folder).join(format!(".s.PGSQL.{PORT}")).exists());
+        config.host(set("PGHOST").as_deref().or(socket.copied()).unwrap_or("localhost"));
+    }
+    if config.get_ports().is_empty()
+        && let Some(port) = set("PGPORT")
+    {
+        let port = port.parse().map_err(|_| DatabaseError::Name {
+            problem: format!("PGPORT is {port}"),
+            hint: "give a number, or unset the variable",
+        })?;
+        config.port(port);
+    }
+    if config.get_user().is_none()
+        && let Some(user) = set("PGUSER")
+    {
+        config.user(&user);
+    }
+    if !text.contains("sslmode=") {
+        let asked = set("PGSSLMODE");
+        config.ssl_mode(match asked.as_deref() {
+            Some("disable" | "allow") => SslMode::Disable,
+            Some(_) => SslMode::Require,
+            None if is_here(config) => SslMode::Disable,
+            None => SslMode::Require,
+        });
+    }
+    config.application_name("wayword").connect_timeout(PATIENCE).keepalives_idle(Duration::from_secs(30));
+    let options = config.get_options().map_or_else(|| OPTIONS.to_owned(), |asked| format!("{OPTIONS} {asked}"));
+    config.options(&options);
+    Ok(())
+}
+
+/// Whether the server is on this machine.
+fn is_here(config: &Config) -> bool {
+    config.get_hosts().iter().all(|host| match host {
+        Host::Tcp(name) => ["localhost", "127.0.0.1", "::1"].contains(&name.as_str()),
+        #[cfg(unix)]
+        Host::Unix(_) => true,
+    })
+}
+
+fn shown(config: &Config) -> String {
+    let user = config.get_user().map_or(String::new(), |user| format!("{user}@"));
+    let host = match config.get_hosts().first() {
+        Some(Host::Tcp(name)) => name.clone(),
+        #[cfg(unix)]
+        Some(Host::Unix(folder)) => folder.display().to_string(),
+        None => String::new(),
+    };
+    let port = config.get_ports().first().map_or(PORT, |port| *port);
+    format!("{user}{host}:{port}/{}", config.get_dbname().unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_password_in_the_name_is_refused_and_not_repeated() {
+        for text in [
+            "postgresql://me:geheim@host/db",
+            "postgresql://me@host/db?password=geheim",
+            "host=h dbname=db password=geheim",
+            "host=h dbname=db passwrd=geheim",
+        ] {
+            let told = Database::named(text, None).unwrap_err().to_string();
+            assert!(!told.contains("geheim"), "{told}");
+        }
+    }
+
+    #[test]
+    fn a_word_is_the_name_of_a_database() {
+        let database = Database::named("wayword_db", None).unwrap();
+        assert!(database.shown().ends_with("/wayword_db"), "{}", database.shown());
+        assert_eq!(Database::named("postgresql://me@far:99/db", None).unwrap().shown(), "me@far:99/db");
+        for bad in ["", " ", "postgresql://me@host", "host=h"] {
+            assert!(Database::named(bad, None).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn another_machine_is_reached_by_tls_alone() {
+        let mode = |text: &str| Database::named(text, None).unwrap().config.get_ssl_mode();
+        assert_eq!(mode("postgresql://me@far/db"), SslMode::Require);
+        assert_eq!(mode("postgresql://me@far/db?sslmode=verify-full"), SslMode::Require);
+        assert_eq!(mode("postgresql://me@far/db?sslmode=disable"), SslMode::Disable);
+        assert_eq!(mode("postgresql://me@localhost/db"), SslMode::Disable);
+        assert_eq!(mode("postgresql:///db?host=/tmp"), SslMode::Disable);
+    }
+}

@@ -1,0 +1,152 @@
+//! A few connections that many threads share, and that are made again when the server was restarted.
+
+use crate::{Database, DatabaseError, error::is_lost};
+use postgres::{Client, Row, Statement, types::ToSql};
+use std::{
+    collections::BTreeMap,
+    fmt,
+    sync::{Condvar, Mutex, MutexGuard, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// How long work goes on to be tried while the server cannot be reached.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// First and longest pause between two tries. Each is twice the one before.
+const FIRST_PAUSE: Duration = Duration::from_millis(50);
+const LAST_PAUSE: Duration = Duration::from_secs(2);
+
+/// A connection, with the statements that it has prepared.
+pub struct Connection {
+    client: Client,
+    prepared: BTreeMap<&'static str, Statement>,
+}
+
+impl Connection {
+    /// Carries out a statement and returns its rows. It is prepared once for each connection.
+    ///
+    /// # Errors
+    /// What the server says.
+    pub fn rows(&mut self, sql: &'static str, values: &[&(dyn ToSql + Sync)]) -> Result<Vec<Row>, postgres::Error> {
+        let statement = match self.prepared.get(sql) {
+            Some(statement) => statement.clone(),
+            None => {
+                let statement = self.client.prepare(sql)?;
+                self.prepared.insert(sql, statement.clone());
+                statement
+            }
+        };
+        self.client.query(&statement, values)
+    }
+
+    /// The connection itself, for transactions and for statements that are put together.
+    pub fn client(&mut self) -> &mut Client {
+        &mut self.client
+    }
+}
+
+/// Connections to one database. Threads take them in turn.
+pub struct Pool {
+    database: Database,
+    most: usize,
+    state: Mutex<State>,
+    back: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    idle: Vec<Connection>,
+    out: usize,
+}
+
+impl Pool {
+    /// A pool of at most so many connections. Makes none yet.
+    #[must_use]
+    pub fn new(database: Database, most: usize) -> Self {
+        Self { database, most: most.max(1), state: Mutex::default(), back: Condvar::new() }
+    }
+
+    /// The database.
+    #[must_use]
+    pub fn database(&self) -> &Database {
+        &self.database
+    }
+
+    /// Works with a connection. While the server cannot be reached, the work is tried again for two minutes, each time
+    /// with a new connection, so it has to do nothing where it was done already.
+    ///
+    /// # Errors
+    /// What the server says, or that it could not be reached.
+    pub fn with<T>(
+        &self,
+        doing: &'static str,
+        mut work: impl FnMut(&mut Connection) -> Result<T, postgres::Error>,
+    ) -> Result<T, DatabaseError> {
+        let until = Instant::now() + PATIENCE;
+        let mut pause = FIRST_PAUSE;
+        loop {
+            let lost = match self.once(doing, &mut work) {
+                Err(error) if error.is_lost() => error,
+                done => return done,
+            };
+            if Instant::now() + pause > until {
+                return Err(lost);
+            }
+            thread::sleep(pause);
+            pause = LAST_PAUSE.min(pause * 2);
+        }
+    }
+
+    fn once<T>(
+        &self,
+        doing: &'static str,
+        work: &mut impl FnMut(&mut Connection) -> Result<T, postgres::Error>,
+    ) -> Result<T, DatabaseError> {
+        let mut connection = self.take()?;
+        // If the work panics, the place of this connection is not free again; the program ends then.
+        let done = work(&mut connection);
+        let mut state = self.state();
+        state.out -= 1;
+        if connection.client.is_closed() || done.as_ref().is_err_and(is_lost) {
+            // The connections that lie idle were lost too.
+            state.idle.clear();
+        } else {
+            state.idle.push(connection);
+        }
+        drop(state);
+        self.back.notify_one();
+        done.map_err(|error| DatabaseError::server(self.database.shown(), doing, &error))
+    }
+
+    fn take(&self) -> Result<Connection, DatabaseError> {
+        let mut state = self.state();
+        while state.out >= self.most {
+            state = self.back.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        state.out += 1;
+        let idle = state.idle.pop();
+        drop(state);
+        let connection = match idle {
+            Some(connection) if !connection.client.is_closed() => Ok(connection),
+            _ => self.database.connect().map(|client| Connection { client, prepared: BTreeMap::new() }),
+        };
+        match connection {
+            Ok(connection) => Ok(connection),
+            Err(error) => {
+                self.state().out -= 1;
+                self.back.notify_one();
+                Err(error)
+            }
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl fmt::Debug for Pool {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Pool").field("database", &self.database).field("most", &self.most).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,108 @@
+//! The tables of a crate, and their version.
+
+use crate::{Connection, DatabaseError, Pool};
+use postgres::error::SqlState;
+
+/// The tables of a crate, in a schema of their own.
+#[derive(Debug, Clone, Copy)]
+pub struct Tables {
+    /// The schema, which holds a table `version` too.
+    pub schema: &'static str,
+    /// The statements that make version 1, that make version 2 of version 1, and so on. A published one never changes.
+    pub steps: &'static [&'static str],
+    /// What a worker's role needs besides, with `ROLE` in place of its name.
+    pub grants: &'static str,
+}
+
+/// The oldest server, as `server_version_num` counts.
+const OLDEST: i32 = 150_000;
+
+/// A number that stands for "someone makes Wayword's tables", among the advisory locks of the database ("Wayw").
+const LOCK: i64 = 0x5761_7977;
+
+impl Tables {
+    /// Everything that makes the tables of a new database and gives a role the rights of a worker.
+    #[must_use]
+    pub fn sql(&self, role: &str) -> String {
+        let role = format!("\"{}\"", role.replace('"', "\"\""));
+        format!("BEGIN;\n{}\n{}\nCOMMIT;\n", self.made(0), self.grants.replace("ROLE", &role))
+    }
+
+    /// The statements from a version to the newest.
+    fn made(&self, from: usize) -> String {
+        let Self { schema, steps, .. } = self;
+        let begin = format!(
+            "CREATE SCHEMA IF NOT EXISTS {schema};\nCREATE TABLE IF NOT EXISTS {schema}.version (version INTEGER NOT NULL);\n"
+        );
+        let steps: String = steps.iter().skip(from).copied().collect::<Vec<_>>().join("\n");
+        let version = steps_len(self.steps);
+        format!("{begin}{steps}\nDELETE FROM {schema}.version;\nINSERT INTO {schema}.version VALUES ({version});\n")
+    }
+}
+
+fn steps_len(steps: &[&str]) -> i32 {
+    i32::try_from(steps.len()).unwrap_or(i32::MAX)
+}
+
+/// Makes the tables, or brings them to the newest version. A role that may not do so works with tables that are made.
+///
+/// # Errors
+/// When the server is too old, the tables are newer than this program, or they have to be made and the role may not.
+pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
+    let database = pool.database().shown().to_owned();
+    let about = pool.with("ask for the server's version", |connection| {
+        let row = connection.client().query_one("SELECT current_setting('server_version_num')::int, version()", &[])?;
+        Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, String>(1)?))
+    })?;
+    if about.0 < OLDEST {
+        let version = about.1.split_whitespace().nth(1).unwrap_or_default().to_owned();
+        return Err(DatabaseError::TooOld { database, version });
+    }
+    let newest = steps_len(tables.steps);
+    let found = pool.with("ask for the version of the tables", |connection| version(connection, tables))?;
+    if found == newest {
+        return Ok(());
+    }
+    if found > newest {
+        return Err(DatabaseError::Newer { database, schema: tables.schema, version: found });
+    }
+    // An error of rights is told apart from the others, so the server's own words are kept beside the result.
+    let mut refused = None;
+    let made = pool.with("make the tables", |connection| {
+        let made = make(connection, tables);
+        if let Err(error) = &made
+            && error.code() == Some(&SqlState::INSUFFICIENT_PRIVILEGE)
+        {
+            refused = error.as_db_error().map(|told| told.message().to_owned());
+        }
+        made
+    });
+    match refused {
+        Some(reason) => Err(DatabaseError::Rights { database, schema: tables.schema, reason }),
+        None => made,
+    }
+}
+
+fn version(connection: &mut Connection, tables: &Tables) -> Result<i32, postgres::Error> {
+    let table = format!("{}.version", tables.schema);
+    let is_there = connection.client().query_one("SELECT to_regclass($1) IS NOT NULL", &[&table])?;
+    if !is_there.try_get::<_, bool>(0)? {
+        return Ok(0);
+    }
+    let row = connection.client().query_one(&format!("SELECT coalesce(max(version), 0) FROM {table}"), &[])?;
+    row.try_get(0)
+}
+
+/// Makes what is missing, in one transaction. Other programs wait for it.
+fn make(connection: &mut Connection, tables: &Tables) -> Result<(), postgres::Error> {
+    let client = connection.client();
+    client.batch_execute("BEGIN")?;
+    let done = client.execute("SELECT pg_advisory_xact_lock($1)", &[&LOCK]).and_then(|_| {
+        let found = version(connection, tables)?;
+        let from = usize::try_from(found).unwrap_or(0);
+        if from < tables.steps.len() { connection.client().batch_execute(&tables.made(from)) } else { Ok(()) }
+    });
+    let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
+    let ended = connection.client().batch_execute(end);
+    done.and(ended)
+}
