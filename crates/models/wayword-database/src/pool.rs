@@ -28,15 +28,21 @@ impl Connection {
     /// # Errors
     /// What the server says.
     pub fn rows(&mut self, sql: &'static str, values: &[&(dyn ToSql + Sync)]) -> Result<Vec<Row>, postgres::Error> {
-        let statement = match self.prepared.get(sql) {
-            Some(statement) => statement.clone(),
-            None => {
-                let statement = self.client.prepare(sql)?;
-                self.prepared.insert(sql, statement.clone());
-                statement
-            }
-        };
+        let statement = self.prepared(sql)?;
         self.client.query(&statement, values)
+    }
+
+    /// A statement, prepared once for each connection.
+    ///
+    /// # Errors
+    /// What the server says.
+    pub fn prepared(&mut self, sql: &'static str) -> Result<Statement, postgres::Error> {
+        if let Some(statement) = self.prepared.get(sql) {
+            return Ok(statement.clone());
+        }
+        let statement = self.client.prepare(sql)?;
+        self.prepared.insert(sql, statement.clone());
+        Ok(statement)
     }
 
     /// The connection itself, for transactions and for statements that are put together.

@@ -1,1 +1,32 @@
 //! A run that many workers make: its plan, chunks, claims and completion, and the scripts that launch workers.
+//!
+//! The plan ([`Plan`]) is written once and holds everything that a worker must agree with. It cuts the items into chunks.
+//! A [`Board`] hands chunks to workers: [`Shard`] needs nothing but a shared folder and gives each worker a fixed part;
+//! a queue in PostgreSQL (feature `postgres`) gives whoever asks what is open. What becomes of a chunk is written in its
+//! mark ([`Done`]), once.
+//!
+//! This crate knows chunks by their numbers. What an item is, and how it is made, is the caller's.
+
+mod board;
+mod done;
+mod error;
+mod folder;
+mod heartbeat;
+mod plan;
+mod protocol;
+#[cfg(feature = "postgres")]
+mod queue;
+mod shard;
+mod work;
+
+pub use board::{Board, Claimed, Left};
+pub use done::{Done, chunk_folder, dead_of, dead_path, done_of, done_path, reopen};
+pub use error::QueueError;
+pub use folder::{put_new, put_whole, sync_tree};
+pub use heartbeat::{Alive, Beat, FRESH, Heart, beats, worker_name};
+pub use plan::{FILE as PLAN, Plan};
+pub use protocol::{Row, State, TRIES};
+#[cfg(feature = "postgres")]
+pub use queue::{Queue, Seen, TABLES, Worker};
+pub use shard::{Part, Shard};
+pub use work::{Ended, Finished, work};
