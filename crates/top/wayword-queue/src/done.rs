@@ -31,9 +31,9 @@ pub struct Done {
     /// Items that failed, by reason.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub failed: BTreeMap<String, usize>,
-    /// How long it took, seconds.
+    /// How long it took the worker that finished it, seconds.
     pub seconds: f64,
-    /// What its calls cost, US dollars.
+    /// What its calls cost that worker, US dollars.
     pub usd: f64,
     /// Who made it.
     pub worker: String,
