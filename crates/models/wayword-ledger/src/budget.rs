@@ -61,7 +61,7 @@ impl Refused {
             }
             Self::NoPrice => "add the model's price to a file, and give the file with --prices FILE",
             Self::Stopped => "all answers are kept: to continue, run the same command",
-            Self::Ledger(_) => "check the ledger's file, then run the same command to continue",
+            Self::Ledger(_) => "check the ledger, then run the same command to continue",
         };
         // An error of the ledger has its own hint.
         let text = self.to_string();

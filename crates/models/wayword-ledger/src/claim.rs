@@ -3,7 +3,7 @@
 
 use crate::{
     Key, LedgerError,
-    store::{Claimed, Store, Write},
+    store::{Claimed, Store},
 };
 use std::{
     thread,
@@ -20,7 +20,7 @@ pub(crate) const PATIENCE: Duration = Duration::from_secs(3600);
 
 /// The right to make a call. Other programs wait until it is dropped or the call is answered.
 pub(crate) struct Claim<'a> {
-    store: &'a Store,
+    store: &'a dyn Store,
     key: &'a Key,
     is_held: bool,
 }
@@ -42,14 +42,14 @@ impl<'a> Claim<'a> {
     /// # Errors
     /// When the ledger cannot be used.
     pub(crate) fn take(
-        store: &'a Store,
+        store: &'a dyn Store,
         key: &'a Key,
         patience: Duration,
         stopped: impl Fn() -> bool,
     ) -> Result<Taken<'a>, LedgerError> {
-        let mut from = None;
+        let mut from: Option<String> = None;
         loop {
-            match store.claim(key, from.take())? {
+            match store.claim(key, from.as_deref())? {
                 Claimed::Ours => return Ok(Taken::Ours(Self { store, key, is_held: true })),
                 Claimed::Answered => return Ok(Taken::Answered),
                 Claimed::Others => {}
@@ -85,7 +85,7 @@ enum Waited {
     Stopped,
 }
 
-fn wait(store: &Store, key: &Key, patience: Duration, stopped: impl Fn() -> bool) -> Result<Waited, LedgerError> {
+fn wait(store: &dyn Store, key: &Key, patience: Duration, stopped: impl Fn() -> bool) -> Result<Waited, LedgerError> {
     let (mut seen, mut since, mut pause) = (None, Instant::now(), FIRST_PAUSE);
     loop {
         if stopped() {
@@ -96,7 +96,7 @@ fn wait(store: &Store, key: &Key, patience: Duration, stopped: impl Fn() -> bool
         if sends {
             since = Instant::now();
         }
-        if store.is_gone(&holder.name) || since.elapsed() >= patience {
+        if holder.is_gone || since.elapsed() >= patience {
             return Ok(Waited::Abandoned(holder.name));
         }
         seen = Some(holder);
@@ -105,25 +105,10 @@ fn wait(store: &Store, key: &Key, patience: Duration, stopped: impl Fn() -> bool
     }
 }
 
-impl Store {
-    /// Asks for the right to make a call, and takes it from the program `from`, which is no longer waited for.
-    fn claim(&self, key: &Key, from: Option<String>) -> Result<Claimed, LedgerError> {
-        let Some(by) = self.name()? else { return Ok(Claimed::Ours) };
-        let written = self.writer.keep(Write::Claim { key: key.to_string(), by: by.to_owned(), from })?;
-        Ok(Claimed::of(written))
-    }
-
-    fn release(&self, key: &Key) {
-        if let Ok(Some(by)) = self.name() {
-            self.writer.note(Write::Release { key: key.to_string(), by: by.to_owned() });
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Call;
+    use crate::{Call, store::Sqlite};
 
     fn key() -> Key {
         Call { model: "t/m".into(), base_url: String::new(), request: "?".into(), replicate: 0 }.key()
@@ -132,22 +117,19 @@ mod tests {
     #[test]
     fn a_program_that_neither_sends_nor_lets_go_is_not_waited_for_for_ever() {
         let folder = tempfile::tempdir().unwrap();
-        let [first, second] = [(), ()].map(|()| Store::open(&folder.path().join("l.db")).unwrap());
+        let [first, second] = [(), ()].map(|()| Sqlite::open(&folder.path().join("l.db")).unwrap());
         let key = key();
         let taken = |store, patience| Claim::take(store, &key, patience, || false).unwrap();
         let held = taken(&first, PATIENCE);
         assert!(matches!(held, Taken::Ours(_)));
+        let before = first.holder(&key).unwrap().unwrap();
         let taken_over = taken(&second, Duration::from_millis(30));
         assert!(matches!(taken_over, Taken::Ours(_)));
         drop(held);
-        first.writer.flush().unwrap();
-        assert_eq!(
-            second.holder(&key).unwrap().unwrap().name,
-            second.name().unwrap().unwrap(),
-            "it is not the first's"
-        );
+        first.flush().unwrap();
+        assert_ne!(second.holder(&key).unwrap().unwrap().name, before.name, "it is not the first's");
         drop(taken_over);
-        second.writer.flush().unwrap();
+        second.flush().unwrap();
         assert_eq!(second.holder(&key).unwrap(), None);
     }
 }

@@ -1,5 +1,6 @@
 //! Errors of the ledger.
 
+use crate::Place;
 use rusqlite::ErrorCode;
 use std::{io::ErrorKind, path::PathBuf, sync::Arc};
 
@@ -26,20 +27,20 @@ pub enum LedgerError {
         kind: &'static str,
     },
     /// An answer is not the one that was written.
-    #[error("{}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: `wayword ledger prune --changed --ledger {}` drops all changed answers; then the same command makes those calls again", path.display(), path.display())]
+    #[error("{place}: the answer of {model} to call {key} was changed after it was written, by a damaged disk or by hand\nhint: {} drops all changed answers; then the same command makes those calls again", place.prune_changed())]
     Changed {
-        /// The file.
-        path: PathBuf,
+        /// The file or the database.
+        place: Place,
         /// The call.
         key: String,
         /// The model that gave the answer.
         model: String,
     },
     /// The database returned an error.
-    #[error("{}: cannot {doing} the ledger: {reason}\nhint: {hint}", path.display())]
+    #[error("{place}: cannot {doing} the ledger: {reason}\nhint: {hint}")]
     Store {
-        /// The file.
-        path: PathBuf,
+        /// The file or the database.
+        place: Place,
         /// What was tried.
         doing: &'static str,
         /// The database's message.
@@ -50,10 +51,12 @@ pub enum LedgerError {
         is_lost: bool,
     },
     /// A file operation failed.
-    #[error("{}: cannot {doing}: {source}\nhint: check that the file or its folder exists, that you may use it, and that the disk has room", path.display())]
+    #[error(
+        "{place}: cannot {doing}: {source}\nhint: check that the file or its folder exists, that you may use it, and that the disk has room"
+    )]
     Io {
-        /// The file.
-        path: PathBuf,
+        /// The file, or the ledger of which a file is made.
+        place: Place,
         /// What was tried.
         doing: &'static str,
         /// The system's error.
@@ -73,9 +76,9 @@ pub enum LedgerError {
 
 impl LedgerError {
     pub(crate) fn store(path: &std::path::Path, doing: &'static str) -> impl Fn(rusqlite::Error) -> Self {
-        let path = path.to_owned();
+        let place = Place::file(path);
         move |error| Self::Store {
-            path: path.clone(),
+            place: place.clone(),
             doing,
             reason: error.to_string(),
             hint: hint(&error),
@@ -93,9 +96,9 @@ impl LedgerError {
         }
     }
 
-    pub(crate) fn io(path: &std::path::Path, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
-        let path = path.to_owned();
-        move |source| Self::Io { path: path.clone(), doing, source: Arc::new(source) }
+    pub(crate) fn io(place: impl Into<Place>, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
+        let place = place.into();
+        move |source| Self::Io { place: place.clone(), doing, source: Arc::new(source) }
     }
 }
 

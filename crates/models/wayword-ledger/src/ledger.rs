@@ -3,7 +3,7 @@
 use crate::{
     LedgerError, Row,
     flight::Flights,
-    store::{Store, Write, may_hold},
+    store::{Sqlite, Store, may_hold},
 };
 use std::{
     fs::File,
@@ -24,7 +24,7 @@ pub struct Ledger {
 
 #[derive(Debug)]
 struct Inner {
-    store: Store,
+    store: Box<dyn Store>,
     flights: Flights,
     /// In a replay: the recording that all answers have to come from.
     recording: Option<PathBuf>,
@@ -36,7 +36,7 @@ impl Ledger {
     /// # Errors
     /// When the file is not a ledger, is on a network file system, or cannot be read and written.
     pub fn open(path: &Path) -> Result<Self, LedgerError> {
-        Ok(Self::of(Store::open(path)?, None))
+        Ok(Self::of(Sqlite::open(path)?, None))
     }
 
     /// Checks whether a ledger may be kept at a path. Opens and makes nothing.
@@ -52,7 +52,7 @@ impl Ledger {
     /// # Errors
     /// When there is not enough memory.
     pub fn in_memory() -> Result<Self, LedgerError> {
-        Ok(Self::of(Store::in_memory()?, None))
+        Ok(Self::of(Sqlite::in_memory()?, None))
     }
 
     /// A ledger that takes all answers from a recording.
@@ -60,22 +60,18 @@ impl Ledger {
     /// # Errors
     /// When the recording cannot be read.
     pub fn replay(recording: &Path) -> Result<Self, LedgerError> {
-        let store = Store::in_memory()?;
-        read(recording, |row| store.writer.note(Write::Answered { sent: None, row: Box::new(row), by: None }))?;
-        store.writer.flush()?;
+        let store = Sqlite::in_memory()?;
+        read(recording, |row| store.fill(row))?;
+        store.flush()?;
         Ok(Self::of(store, Some(recording.to_owned())))
     }
 
-    fn of(store: Store, recording: Option<PathBuf>) -> Self {
-        Self { inner: Arc::new(Inner { store, flights: Flights::default(), recording }) }
+    fn of(store: impl Store + 'static, recording: Option<PathBuf>) -> Self {
+        Self { inner: Arc::new(Inner { store: Box::new(store), flights: Flights::default(), recording }) }
     }
 
-    pub(crate) fn store(&self) -> &Store {
-        &self.inner.store
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        self.inner.store.path()
+    pub(crate) fn store(&self) -> &dyn Store {
+        &*self.inner.store
     }
 
     pub(crate) fn flights(&self) -> &Flights {

@@ -2,11 +2,11 @@
 
 use crate::{
     Answer, Call, Key, LedgerError, Limits, Refused, Row, Stopper,
-    budget::{Budget, known},
+    budget::{Budget, Spent, known},
     claim::{Claim, PATIENCE, Taken},
     ledger::{Ledger, now_unix_s},
     queries::Filter,
-    store::Write,
+    store::{End, Request},
 };
 use std::{
     path::{Path, PathBuf},
@@ -23,6 +23,8 @@ pub struct Run {
 #[derive(Debug)]
 struct RunState {
     id: String,
+    limits: Limits,
+    /// Has no limits if the store keeps the budget.
     budget: Budget,
     stopper: Stopper,
     totals: Mutex<Totals>,
@@ -55,8 +57,17 @@ pub struct Totals {
 pub struct Attempts<'a> {
     run: &'a Run,
     key: &'a Key,
-    /// The request in flight: its number in the ledger, and its upper bound in US dollars.
-    open: Option<(i64, Option<f64>)>,
+    /// The request in flight.
+    open: Option<Sent>,
+}
+
+/// A request that was written down.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sent {
+    /// Its number in the store.
+    pub(crate) number: i64,
+    /// Its upper bound, US dollars.
+    pub(crate) most_usd: Option<f64>,
 }
 
 /// A call was not answered.
@@ -89,9 +100,14 @@ impl Ledger {
     /// # Errors
     /// When the ledger cannot be read.
     pub fn run(&self, id: &str, limits: Limits) -> Result<Run, LedgerError> {
+        let (own, spent) = match self.store().keeps_budget() {
+            true => (Limits::default(), Spent::default()),
+            false => (limits, self.store().spent(id)?),
+        };
         let state = RunState {
             id: id.to_owned(),
-            budget: Budget::new(limits, self.store().spent(id)?),
+            limits,
+            budget: Budget::new(own, spent),
             stopper: Stopper::default(),
             totals: Mutex::default(),
         };
@@ -146,10 +162,8 @@ impl Run {
     }
 
     fn stored(&self, key: &Key) -> Result<Option<Answer>, LedgerError> {
-        let store = self.ledger.store();
-        let answer = store.answer(key)?;
+        let answer = self.ledger.store().answer(key, &self.state.id)?;
         if answer.is_some() {
-            store.writer.note(Write::Used { run: self.state.id.clone(), key: key.to_string() });
             self.count(|totals| totals.hits += 1);
         }
         Ok(answer)
@@ -206,53 +220,49 @@ impl Attempts<'_> {
         let most_usd = known(most_usd);
         self.run.state.budget.reserve(most_usd)?;
         match self.keep_sent(most_usd) {
-            Ok(sent) => {
-                self.open = Some((sent, most_usd));
+            Ok(number) => {
+                self.open = Some(Sent { number, most_usd });
                 self.run.count(|totals| totals.calls += 1);
                 Ok(())
             }
-            Err(error) => {
+            Err(refused) => {
                 self.run.state.budget.cancel(most_usd);
-                Err(error.into())
+                Err(refused)
             }
         }
     }
 
-    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, LedgerError> {
-        let (store, run) = (self.run.ledger.store(), self.run.state.id.clone());
-        let by = store.name()?.map(str::to_owned);
-        store.writer.keep(Write::Sent { run, key: self.key.to_string(), most_usd, at: now_unix_s(), by })
+    fn keep_sent(&self, most_usd: Option<f64>) -> Result<i64, Refused> {
+        let RunState { id, limits, .. } = &*self.run.state;
+        let request = Request { run: id, key: self.key, most_usd, at_unix_s: now_unix_s(), limits: *limits };
+        self.run.ledger.store().sent(&request)
     }
 
     /// The request was not sent after all.
     pub fn cancelled(&mut self) {
-        let Some((sent, most_usd)) = self.open.take() else { return };
-        self.run.state.budget.cancel(most_usd);
+        let Some(sent) = self.open.take() else { return };
+        self.run.state.budget.cancel(sent.most_usd);
         self.run.count(|totals| totals.calls -= 1);
-        self.end(sent, "cancelled", "");
+        self.run.ledger.store().ended(&sent, End::Cancelled, "");
     }
 
     /// The request brought no answer. If it may have been paid for, its upper bound counts as spent.
     pub fn failed(&mut self, reason: &str, maybe_paid: bool) {
-        let Some((sent, most_usd)) = self.open.take() else { return };
-        let lost_usd = if maybe_paid { most_usd.unwrap_or(0.0) } else { 0.0 };
-        self.run.state.budget.settle(most_usd, lost_usd);
+        let Some(sent) = self.open.take() else { return };
+        let lost_usd = if maybe_paid { sent.most_usd.unwrap_or(0.0) } else { 0.0 };
+        self.run.state.budget.settle(sent.most_usd, lost_usd);
         self.run.count(|totals| {
             totals.failed += 1;
             totals.lost += u64::from(maybe_paid);
             totals.maybe_usd += lost_usd;
         });
-        self.end(sent, if maybe_paid { "lost" } else { "failed" }, reason);
-    }
-
-    fn end(&self, sent: i64, outcome: &'static str, reason: &str) {
-        self.run.ledger.store().writer.note(Write::Ended { sent, outcome, reason: reason.to_owned() });
+        self.run.ledger.store().ended(&sent, if maybe_paid { End::Lost } else { End::Failed }, reason);
     }
 
     /// Stores an answer. Returns the one that is kept: an answer that another program stored first, or this one.
     fn answered(&mut self, call: &Call, answer: Answer) -> Result<Answer, LedgerError> {
         let open = self.open.take();
-        let most_usd = open.and_then(|(_, most_usd)| most_usd);
+        let most_usd = open.and_then(|sent| sent.most_usd);
         let answer = Answer { usd: known(answer.usd), ..answer };
         self.run.state.budget.settle(most_usd, answer.usd.or(most_usd).unwrap_or(0.0));
         let row = Row {
@@ -262,17 +272,15 @@ impl Attempts<'_> {
             at_unix_s: now_unix_s(),
             run: self.run.state.id.clone(),
         };
-        let sent = open.map(|(sent, _)| sent);
         let store = self.run.ledger.store();
-        let by = store.name()?.map(str::to_owned);
-        let is_first = store.writer.keep(Write::Answered { sent, row: Box::new(row), by })? != 0;
+        let is_first = store.answered(open.as_ref(), row)?;
         self.run.count(|totals| {
             totals.answered += 1;
             totals.tokens_in = totals.tokens_in.saturating_add(answer.tokens_in);
             totals.tokens_out = totals.tokens_out.saturating_add(answer.tokens_out);
             totals.usd += answer.usd.unwrap_or(0.0);
         });
-        let stands = if is_first { None } else { store.answer(self.key)? };
+        let stands = if is_first { None } else { store.answer(self.key, &self.run.state.id)? };
         Ok(stands.unwrap_or(answer))
     }
 }

@@ -1,35 +1,116 @@
-//! The database file.
+//! Where calls are kept.
+//!
+//! Architecture invariant: what a store says it has written survives the end of the program, and a loss of power too.
 
-mod presence;
-mod schema;
-mod writer;
+mod sqlite;
 
-use crate::{Answer, Key, LedgerError, budget::Spent, network_at};
-use presence::Presence;
-use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    sync::{Mutex, MutexGuard, OnceLock, PoisonError},
-    time::Duration,
+use crate::{
+    Answer, By, CostLine, Filter, Key, LedgerError, Limits, Place, Refused, Row, Spending, budget::Spent, run::Sent,
 };
+use std::fmt;
 
-pub(crate) use schema::{COLUMNS, sound};
-pub(crate) use writer::{Claimed, Write, Writer};
+pub(crate) use sqlite::{Sqlite, may_hold};
 
-/// How long this program waits for another one that writes.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// Keeps calls, requests, and what runs have spent. Every function may be called by many threads at once.
+pub(crate) trait Store: fmt::Debug + Send + Sync {
+    /// Where it is, for messages.
+    fn place(&self) -> Place;
 
-/// A ledger's file: one connection that reads, one thread that writes.
-#[derive(Debug)]
-pub(crate) struct Store {
-    path: PathBuf,
-    reader: Mutex<Connection>,
-    pub(crate) writer: Writer,
-    /// Shows other programs that this one is running, from its first claim on. It is dropped after the writer, because
-    /// the writer releases the claims.
-    presence: OnceLock<Result<Presence, LedgerError>>,
-    is_shared: bool,
+    /// The answer of a call, if it has one. Notes that the run has used it.
+    fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError>;
+
+    /// Asks for the right to make a call, and takes it from the program `from`, which is no longer waited for. A store
+    /// of one program alone always gives it.
+    fn claim(&self, key: &Key, from: Option<&str>) -> Result<Claimed, LedgerError>;
+
+    /// Gives back the right to make a call. If that cannot be written now, it is written later.
+    fn release(&self, key: &Key);
+
+    /// The program that is making a call at the moment.
+    fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError>;
+
+    /// Writes a request down that is about to be sent, and returns its number. A store that keeps the budget also
+    /// reserves its money, and refuses where a limit would be exceeded.
+    fn sent(&self, request: &Request<'_>) -> Result<i64, Refused>;
+
+    /// Writes down that a request brought no answer. If that cannot be written now, it is written later.
+    fn ended(&self, sent: &Sent, end: End, reason: &str);
+
+    /// Writes an answer, and returns whether it is the call's first one. Gives back the right to make the call. The
+    /// program need not have had it.
+    fn answered(&self, sent: Option<&Sent>, row: Row) -> Result<bool, LedgerError>;
+
+    /// Returns once everything that was to be written later is written.
+    fn flush(&self) -> Result<(), LedgerError>;
+
+    /// Whether the store itself keeps to the limits of runs, because several programs make one run.
+    fn keeps_budget(&self) -> bool {
+        false
+    }
+
+    /// What a run has spent so far against its limits: what was paid, plus the upper bounds of requests that may have
+    /// been paid.
+    fn spent(&self, run: &str) -> Result<Spent, LedgerError>;
+
+    /// What a run has spent so far, told apart.
+    fn spending(&self, run: &str) -> Result<Spending, LedgerError>;
+
+    /// Passes the calls of a filter to `take`.
+    fn each(
+        &self,
+        filter: &Filter,
+        order: Order,
+        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
+    ) -> Result<(), LedgerError>;
+
+    /// Drops the calls of a filter, and returns how many.
+    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError>;
+
+    /// Drops the answers that were changed, and returns how many.
+    fn prune_changed(&self) -> Result<usize, LedgerError>;
+
+    /// Whether there is an answer of a model at an address.
+    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError>;
+
+    /// What calls have cost.
+    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError>;
+
+    /// How many requests have no known answer.
+    fn lost(&self) -> Result<u64, LedgerError>;
+}
+
+/// A request that is about to be sent.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Request<'a> {
+    pub(crate) run: &'a str,
+    pub(crate) key: &'a Key,
+    /// The most that it may cost, US dollars.
+    pub(crate) most_usd: Option<f64>,
+    pub(crate) at_unix_s: i64,
+    /// The limits of the run, for a store that keeps the budget.
+    pub(crate) limits: Limits,
+}
+
+/// How a request without an answer ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// It was not sent after all.
+    Cancelled,
+    /// It failed and costs nothing.
+    Failed,
+    /// It failed and may have been paid for.
+    Lost,
+}
+
+impl End {
+    /// Its name in the store.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Cancelled => "cancelled",
+            Self::Failed => "failed",
+            Self::Lost => "lost",
+        }
+    }
 }
 
 /// The program that is making a call.
@@ -39,129 +120,26 @@ pub(crate) struct Holder {
     pub(crate) name: String,
     /// How many requests it has sent for the call.
     pub(crate) sent: i64,
+    /// Whether it has ended.
+    pub(crate) is_gone: bool,
 }
 
-impl Store {
-    pub(crate) fn open(path: &Path) -> Result<Self, LedgerError> {
-        // SQLite gives names such as ":memory:" a special meaning. An absolute path is always a file.
-        let path = &std::path::absolute(path).map_err(LedgerError::io(path, "find the ledger"))?;
-        may_hold(path)?;
-        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-            fs::create_dir_all(folder).map_err(LedgerError::io(folder, "make the folder"))?;
-        }
-        own_file(path)?;
-        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-        let connect = || -> Result<Connection, LedgerError> {
-            let connection = Connection::open_with_flags(path, flags).map_err(LedgerError::store(path, "open"))?;
-            connection.busy_timeout(PATIENCE).map_err(LedgerError::store(path, "open"))?;
-            Ok(connection)
-        };
-        let mut writing = connect()?;
-        schema::prepare(&mut writing, path)?;
-        let (reader, writer) = (Mutex::new(connect()?), Writer::start(writing, path)?);
-        Ok(Self { path: path.to_owned(), reader, writer, presence: OnceLock::new(), is_shared: true })
-    }
-
-    /// A ledger in memory, which ends with the process. Its connections share it by a unique name.
-    pub(crate) fn in_memory() -> Result<Self, LedgerError> {
-        use std::sync::atomic::{AtomicU64, Ordering};
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
-        let path = PathBuf::from("memory");
-        let name = format!(
-            "file:ledger-{}-{}?mode=memory&cache=shared",
-            std::process::id(),
-            NUMBER.fetch_add(1, Ordering::Relaxed)
-        );
-        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE | OpenFlags::SQLITE_OPEN_URI;
-        let connect = || Connection::open_with_flags(&name, flags).map_err(LedgerError::store(&path, "open"));
-        let mut writing = connect()?;
-        schema::prepare(&mut writing, &path)?;
-        let reader = connect()?;
-        // Otherwise connections that share a cache would lock each other out.
-        reader.pragma_update(None, "read_uncommitted", true).map_err(LedgerError::store(&path, "open"))?;
-        let (reader, writer) = (Mutex::new(reader), Writer::start(writing, &path)?);
-        Ok(Self { path, reader, writer, presence: OnceLock::new(), is_shared: false })
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub(crate) fn reader(&self) -> MutexGuard<'_, Connection> {
-        self.reader.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The answer of a call, if it has one.
-    pub(crate) fn answer(&self, key: &Key) -> Result<Option<Answer>, LedgerError> {
-        let failed = LedgerError::store(&self.path, "read");
-        let reader = self.reader();
-        let sql = format!("SELECT {} FROM calls WHERE key = ?1", schema::COLUMNS);
-        let mut statement = reader.prepare_cached(&sql).map_err(&failed)?;
-        let mut rows = statement.query(params![key.as_str()]).map_err(&failed)?;
-        let Some(row) = rows.next().map_err(&failed)? else { return Ok(None) };
-        Ok(Some(schema::sound(row, &self.path)?.answer))
-    }
-
-    /// The name under which other programs know this one; `None` for a ledger in memory, which has no other programs.
-    /// The first call also removes what ended programs left behind.
-    pub(crate) fn name(&self) -> Result<Option<&str>, LedgerError> {
-        if !self.is_shared {
-            return Ok(None);
-        }
-        let begin = || {
-            let presence = Presence::new(&self.path)?;
-            for by in presence::sweep(&self.path) {
-                self.writer.note(Write::Forget { by });
-            }
-            Ok(presence)
-        };
-        match self.presence.get_or_init(begin) {
-            Ok(presence) => Ok(Some(presence.name())),
-            Err(error) => Err(error.clone()),
-        }
-    }
-
-    /// The program that is making a call at the moment.
-    pub(crate) fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError> {
-        let failed = LedgerError::store(&self.path, "read");
-        let reader = self.reader();
-        let mut statement = reader.prepare_cached("SELECT holder, sent FROM claims WHERE key = ?1").map_err(&failed)?;
-        let holder = |row: &rusqlite::Row<'_>| Ok(Holder { name: row.get(0)?, sent: row.get(1)? });
-        statement.query_row(params![key.as_str()], holder).optional().map_err(&failed)
-    }
-
-    /// Whether the program of that name has ended.
-    pub(crate) fn is_gone(&self, name: &str) -> bool {
-        presence::is_gone(&self.path, name)
-    }
-
-    /// What a run has spent so far: what was paid, plus the upper bounds of requests that may have been paid.
-    pub(crate) fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
-        let failed = LedgerError::store(&self.path, "read");
-        self.writer.flush()?;
-        let reader = self.reader();
-        let sql = "SELECT TOTAL(CASE WHEN outcome = 'answered' THEN COALESCE(usd, most_usd)
-                                     WHEN outcome IS NULL OR outcome = 'lost' THEN most_usd END),
-                   COUNT(*) FROM sent WHERE run = ?1 AND outcome IS NOT 'cancelled'";
-        let spent =
-            reader.query_row(sql, params![run], |row| Ok((row.get(0)?, row.get::<_, i64>(1)?))).map_err(&failed)?;
-        Ok(Spent { usd: spent.0, reserved_usd: 0.0, calls: u64::try_from(spent.1).unwrap_or(0) })
-    }
+/// The result of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Claimed {
+    /// This program has it.
+    Ours,
+    /// Another program has it.
+    Others,
+    /// The call was answered before.
+    Answered,
 }
 
-/// Refuses a path on a file system on which the database is not reliable.
-pub(crate) fn may_hold(path: &Path) -> Result<(), LedgerError> {
-    match network_at(path) {
-        Some(kind) => Err(LedgerError::Network { path: path.to_owned(), kind }),
-        None => Ok(()),
-    }
-}
-
-/// Makes the file if it does not exist. Only its owner can read it, because prompts may be private.
-fn own_file(path: &Path) -> Result<(), LedgerError> {
-    let mut options = fs::OpenOptions::new();
-    options.create(true).append(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    options.open(path).map(drop).map_err(LedgerError::io(path, "make the ledger"))
+/// An order of calls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// By their keys.
+    Key,
+    /// The latest first, at most as many as the filter's limit.
+    Latest,
 }

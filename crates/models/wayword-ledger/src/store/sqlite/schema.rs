@@ -1,6 +1,6 @@
 //! Tables and rows.
 
-use crate::{Answer, Call, Key, LedgerError, call::Row, checksum};
+use crate::{Answer, Call, Key, LedgerError, Place, Row, checksum};
 use rusqlite::{Connection, ErrorCode, Transaction, TransactionBehavior};
 use std::{
     path::Path,
@@ -43,7 +43,7 @@ CREATE TABLE claims (key TEXT PRIMARY KEY, holder TEXT NOT NULL, sent INTEGER NO
 ";
 
 /// The columns of a row of `calls`, in the order in which [`read`] takes them.
-pub(crate) const COLUMNS: &str = "calls.key, model, base_url, request, replicate, answer, finish, tokens_in, tokens_out, usd, \
+pub(super) const COLUMNS: &str = "calls.key, model, base_url, request, replicate, answer, finish, tokens_in, tokens_out, usd, \
                                   latency_ms, attempts, at, calls.run, checksum";
 
 /// How long this program waits for others that open the same ledger at the same time.
@@ -104,9 +104,9 @@ fn write_ahead(connection: &Connection) -> rusqlite::Result<()> {
 ///
 /// # Errors
 /// When the row is not as it was written.
-pub(crate) fn sound(row: &rusqlite::Row<'_>, path: &Path) -> Result<Row, LedgerError> {
+pub(super) fn sound(row: &rusqlite::Row<'_>, path: &Path) -> Result<Row, LedgerError> {
     let changed = || LedgerError::Changed {
-        path: path.to_owned(),
+        place: Place::file(path),
         key: row.get(0).unwrap_or_else(|_| "of an unknown name".to_owned()),
         model: row.get(1).unwrap_or_else(|_| "an unknown model".to_owned()),
     };

@@ -1,6 +1,6 @@
 //! The one thread that writes. It puts all writes that arrived during the last commit into one commit.
 
-use crate::{LedgerError, call::Row, checksum};
+use crate::{LedgerError, Place, Row, checksum, store::Claimed};
 use rusqlite::{Connection, Transaction, TransactionBehavior, params};
 use std::{
     path::{Path, PathBuf},
@@ -17,7 +17,7 @@ const LAST_PATIENCE: Duration = Duration::from_secs(1);
 
 /// A change to the ledger.
 #[derive(Debug)]
-pub(crate) enum Write {
+pub(super) enum Write {
     /// A request is about to be sent.
     Sent { run: String, key: String, most_usd: Option<f64>, at: i64, by: Option<String> },
     /// A request brought no answer. Its outcome is `lost` if it may have been paid.
@@ -37,29 +37,8 @@ pub(crate) enum Write {
 }
 
 /// The result of a write: for a request that is about to be sent, its number; for an answer, 1 if it is the first and 0
-/// if the call had one before; for a claim, the number that [`Claimed::of`] reads.
+/// if the call had one before; for a claim, the number that [`claimed`] reads.
 type Written = Result<i64, LedgerError>;
-
-/// The result of a claim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Claimed {
-    /// This program has it.
-    Ours,
-    /// Another program has it.
-    Others,
-    /// The call was answered before.
-    Answered,
-}
-
-impl Claimed {
-    pub(crate) fn of(written: i64) -> Self {
-        match written {
-            0 => Self::Ours,
-            1 => Self::Others,
-            _ => Self::Answered,
-        }
-    }
-}
 
 impl Write {
     /// Whether the write has to survive a loss of power. Claims need not, because they end with their programs.
@@ -76,7 +55,7 @@ struct Job {
 
 /// Passes writes to the writing thread. When it is dropped, all pending writes are finished first.
 #[derive(Debug)]
-pub(crate) struct Writer {
+pub(super) struct Writer {
     jobs: Option<mpsc::SyncSender<Job>>,
     thread: Option<JoinHandle<()>>,
     path: PathBuf,
@@ -94,19 +73,19 @@ impl Writer {
     }
 
     /// Writes a change, and returns once it is on disk.
-    pub(crate) fn keep(&self, write: Write) -> Written {
+    pub(super) fn keep(&self, write: Write) -> Written {
         let (done, written) = mpsc::sync_channel(1);
         self.send(Job { write, done: Some(done) });
         written.recv().unwrap_or_else(|_| Err(self.gone()))
     }
 
     /// Writes a change with the next commit that succeeds, and does not wait for it.
-    pub(crate) fn note(&self, write: Write) {
+    pub(super) fn note(&self, write: Write) {
         self.send(Job { write, done: None });
     }
 
     /// Returns once all earlier writes are on disk.
-    pub(crate) fn flush(&self) -> Result<(), LedgerError> {
+    pub(super) fn flush(&self) -> Result<(), LedgerError> {
         self.keep(Write::Flush).map(drop)
     }
 
@@ -119,7 +98,7 @@ impl Writer {
 
     fn gone(&self) -> LedgerError {
         LedgerError::Store {
-            path: self.path.clone(),
+            place: Place::file(&self.path),
             doing: "write",
             reason: "the thread that writes it has ended".to_owned(),
             hint: "run the same command again",
@@ -222,6 +201,15 @@ fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> 
         }
     }
     Ok(0)
+}
+
+/// What the number of a claim says.
+pub(super) fn claimed(written: i64) -> Claimed {
+    match written {
+        0 => Claimed::Ours,
+        1 => Claimed::Others,
+        _ => Claimed::Answered,
+    }
 }
 
 /// Gives a call to a program, unless the call is answered or another program than `from` has it.

@@ -17,7 +17,7 @@ const MARK: &str = ".in-use-";
 
 /// A file that this program keeps locked as long as it uses the ledger.
 #[derive(Debug)]
-pub(crate) struct Presence {
+pub(super) struct Presence {
     name: String,
     path: PathBuf,
     /// Open as long as the lock is held.
@@ -48,7 +48,7 @@ impl Presence {
     }
 
     /// The unique name of this program, which is part of its file's name.
-    pub(crate) fn name(&self) -> &str {
+    pub(super) fn name(&self) -> &str {
         &self.name
     }
 }
@@ -61,7 +61,7 @@ impl Drop for Presence {
 }
 
 /// Whether the program of that name has ended. If this cannot be found out, it counts as running.
-pub(crate) fn is_gone(ledger: &Path, name: &str) -> bool {
+pub(super) fn is_gone(ledger: &Path, name: &str) -> bool {
     // A damaged ledger may contain any name.
     if name.is_empty() || !name.chars().all(|c| c.is_ascii_hexdigit() || c == '-') {
         return true;

@@ -1,0 +1,50 @@
+//! Where a ledger is, as messages name it.
+
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
+
+/// Where a ledger is. Its text names a file or a database, and never a password.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    /// A file.
+    File(PathBuf),
+    /// A database on a server.
+    Database(String),
+}
+
+impl Place {
+    pub(crate) fn file(path: &Path) -> Self {
+        Self::File(path.to_owned())
+    }
+
+    /// How to drop the answers that were changed.
+    pub(crate) fn prune_changed(&self) -> String {
+        match self {
+            Self::File(path) => format!("`wayword ledger prune --changed --ledger {}`", path.display()),
+            Self::Database(_) => "`wayword ledger prune --changed` with this database".to_owned(),
+        }
+    }
+}
+
+impl From<&Path> for Place {
+    fn from(path: &Path) -> Self {
+        Self::file(path)
+    }
+}
+
+impl From<&PathBuf> for Place {
+    fn from(path: &PathBuf) -> Self {
+        Self::file(path)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path) => path.display().fmt(f),
+            Self::Database(name) => f.write_str(name),
+        }
+    }
+}
