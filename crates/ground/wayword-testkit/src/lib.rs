@@ -3,7 +3,7 @@
 //! a dataset.
 //!
 //! [`provider`] has models behind HTTP that answer by script, with every fault that services have; [`PlayedDetector`] finds
-//! things by script. [`documents`] has the commands that the repository's documents give their readers to type.
+//! things by script; [`Postgres`] starts a server of PostgreSQL. [`documents`] has the commands that the repository's documents give their readers to type.
 
 mod boxes;
 pub mod documents;
@@ -12,6 +12,7 @@ mod house_file;
 mod pictures;
 mod plan;
 mod played_detector;
+mod postgres;
 pub mod provider;
 
 use serde_json::{Value, json};
@@ -19,6 +20,7 @@ use std::{fs, io, path::Path};
 
 pub use plan::{SCAN, viewpoint_id};
 pub use played_detector::PlayedDetector;
+pub use postgres::Postgres;
 
 /// Writes the building below `data`, laid out as a user's Matterport3D and REVERIE folders are:
 /// `matterport/connectivity`, `matterport/v1/scans`, `reverie` (boxes, `objpos.json`, `REVERIE_val_seen.json`) and

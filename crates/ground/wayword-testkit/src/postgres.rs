@@ -1,0 +1,192 @@
+//! A server of PostgreSQL that a test starts for itself, with the programs that are installed on this machine.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test whose server cannot be started fails")]
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::{
+        Arc, Mutex, PoisonError, Weak,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+use tempfile::TempDir;
+
+/// The user of the server.
+const USER: &str = "postgres";
+
+/// A running server. It listens on a socket in its own folder alone, asks for no password, and is stopped when this is
+/// dropped.
+#[derive(Debug)]
+pub struct Postgres {
+    programs: PathBuf,
+    /// The user under whom the server runs, if this program runs as root: the server refuses to.
+    as_user: Option<String>,
+    folder: TempDir,
+}
+
+impl Postgres {
+    /// Starts a server with no data; `None` if PostgreSQL is not installed.
+    ///
+    /// # Panics
+    /// When it is installed and cannot be started.
+    #[must_use]
+    pub fn start() -> Option<Self> {
+        let programs = programs()?;
+        // The path of a socket must be short.
+        let folder = tempfile::Builder::new().prefix("pg").tempdir().expect("a temporary folder");
+        let server = Self { programs, as_user: other_user(), folder };
+        if let Some(user) = &server.as_user {
+            done(Command::new("chown").arg(user).arg(server.folder.path()));
+        }
+        let data = server.data();
+        let encoding = ["--encoding=UTF8", "--locale=C", "--auth=trust", "--no-sync", "-U", USER, "-D"];
+        done(server.program("initdb").args(encoding).arg(&data));
+        server.go_on();
+        Some(server)
+    }
+
+    /// The server that the tests of this program share. It is stopped when no test uses it any more.
+    #[must_use]
+    pub fn shared() -> Option<Arc<Self>> {
+        static SHARED: Mutex<Weak<Postgres>> = Mutex::new(Weak::new());
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(server) = shared.upgrade() {
+            return Some(server);
+        }
+        let server = Arc::new(Self::start()?);
+        *shared = Arc::downgrade(&server);
+        Some(server)
+    }
+
+    /// How clients name a new, empty database.
+    ///
+    /// # Panics
+    /// When the server cannot make it.
+    #[must_use]
+    pub fn new_database(&self) -> String {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        let name = format!("test{}", NUMBER.fetch_add(1, Ordering::Relaxed));
+        done(self.program("createdb").args(["-U", USER, "-h"]).arg(self.folder.path()).arg(&name));
+        self.url_of(USER, &name)
+    }
+
+    /// How clients name the database that every server has.
+    #[must_use]
+    pub fn url(&self) -> String {
+        self.url_of(USER, "postgres")
+    }
+
+    /// How a client of a role names a database.
+    #[must_use]
+    pub fn url_of(&self, role: &str, database: &str) -> String {
+        format!("postgresql://{role}@/{database}?host={}", self.folder.path().display())
+    }
+
+    /// Stops the server as a crash would, and starts it again.
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn restart(&self) {
+        self.stop();
+        self.go_on();
+    }
+
+    /// Stops the server as a crash would.
+    pub fn stop(&self) {
+        let mut stop = self.program("pg_ctl");
+        // If it does not run, there is nothing to stop.
+        let _ = stop.args(["-m", "immediate", "-w", "stop", "-D"]).arg(self.data()).output();
+    }
+
+    /// Starts the server that was stopped.
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn go_on(&self) {
+        let folder = self.folder.path().display();
+        let options = format!("-c listen_addresses='' -c unix_socket_directories='{folder}' -c max_connections=200");
+        let mut start = self.program("pg_ctl");
+        start.args(["-w", "-o", &options, "-l"]).arg(self.folder.path().join("log")).arg("-D").arg(self.data());
+        done(start.arg("start").stdout(std::process::Stdio::null()));
+    }
+
+    fn data(&self) -> PathBuf {
+        self.folder.path().join("data")
+    }
+
+    /// One of PostgreSQL's programs, under the server's user.
+    fn program(&self, name: &str) -> Command {
+        let program = self.programs.join(name);
+        let mut command = match &self.as_user {
+            None => Command::new(program),
+            Some(user) => {
+                let mut command = Command::new("setpriv");
+                command.args(["--reuid", user, "--regid", user, "--clear-groups", "--"]).arg(program);
+                command
+            }
+        };
+        // The server's user may not see the folder in which the tests run.
+        command.current_dir(self.folder.path()).env("LC_ALL", "C").env_remove("PGDATA");
+        command
+    }
+}
+
+impl Drop for Postgres {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// The folder of PostgreSQL's programs.
+fn programs() -> Option<PathBuf> {
+    let path = env::var_os("PATH").unwrap_or_default();
+    let mut debian: Vec<PathBuf> = fs::read_dir("/usr/lib/postgresql")
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|version| version.path().join("bin"))
+        .collect();
+    // The newest first.
+    debian.sort_by_key(|folder| std::cmp::Reverse(version(folder)));
+    let others = env::split_paths(&path).chain([PathBuf::from("/usr/local/bin")]);
+    debian
+        .into_iter()
+        .chain(others)
+        .find(|folder| ["initdb", "pg_ctl", "createdb"].iter().all(|program| folder.join(program).exists()))
+}
+
+/// The version in the path of one of Debian's folders.
+fn version(folder: &Path) -> u32 {
+    let name = folder.parent().and_then(Path::file_name).and_then(|name| name.to_str());
+    name.and_then(|name| name.parse().ok()).unwrap_or(0)
+}
+
+/// The user under whom the server has to run, if this program runs as root.
+fn other_user() -> Option<String> {
+    let id = |of: &[&str]| Command::new("id").args(of).output().ok().filter(|output| output.status.success());
+    let is_root = id(&["-u"]).is_some_and(|output| output.stdout.trim_ascii() == b"0");
+    let other = if id(&["-u", USER]).is_some() { USER } else { "nobody" };
+    is_root.then(|| other.to_owned())
+}
+
+fn done(command: &mut Command) -> Output {
+    // A server keeps the pipes of its parent open, so only what fails is read.
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {said}");
+    output
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_newest_of_debians_versions_is_taken() {
+        let path = |version: &str| PathBuf::from(format!("/usr/lib/postgresql/{version}/bin"));
+        assert!(version(&path("17")) > version(&path("9.6")));
+        assert!(version(&path("17")) > version(&path("15")));
+    }
+}
