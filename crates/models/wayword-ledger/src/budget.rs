@@ -95,6 +95,19 @@ pub(crate) fn known(usd: Option<f64>) -> Option<f64> {
 /// Tolerance, US dollars: rounding in a sum of many small amounts must not refuse the last request that fits.
 const ROUNDING_USD: f64 = 1e-9;
 
+/// Refuses a request that could exceed a limit.
+pub(crate) fn fits(limits: Limits, spent: Spent, most_usd: Option<f64>) -> Result<(), Refused> {
+    if let Some(max_calls) = limits.max_calls.filter(|max_calls| spent.calls >= *max_calls) {
+        return Err(Refused::MaxCalls { max_calls });
+    }
+    let Some(max_usd) = limits.max_usd else { return Ok(()) };
+    let Some(next_usd) = most_usd else { return Err(Refused::NoPrice) };
+    let spent_usd = spent.usd + spent.reserved_usd;
+    // A limit that is no number lets nothing out.
+    let fits = spent_usd + next_usd <= max_usd + ROUNDING_USD;
+    if fits { Ok(()) } else { Err(Refused::MaxUsd { max_usd, spent_usd, next_usd }) }
+}
+
 impl Budget {
     pub(crate) fn new(limits: Limits, spent: Spent) -> Self {
         Self { limits, spent: Mutex::new(spent) }
@@ -103,21 +116,8 @@ impl Budget {
     /// Reserves money for a request.
     pub(crate) fn reserve(&self, most_usd: Option<f64>) -> Result<(), Refused> {
         let mut spent = self.spent.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(max_calls) = self.limits.max_calls.filter(|max_calls| spent.calls >= *max_calls) {
-            return Err(Refused::MaxCalls { max_calls });
-        }
-        let next_usd = most_usd.unwrap_or(0.0);
-        if let Some(max_usd) = self.limits.max_usd {
-            if most_usd.is_none() {
-                return Err(Refused::NoPrice);
-            }
-            let spent_usd = spent.usd + spent.reserved_usd;
-            let fits = spent_usd + next_usd <= max_usd + ROUNDING_USD;
-            if !fits {
-                return Err(Refused::MaxUsd { max_usd, spent_usd, next_usd });
-            }
-        }
-        spent.reserved_usd += next_usd;
+        fits(self.limits, *spent, most_usd)?;
+        spent.reserved_usd += most_usd.unwrap_or(0.0);
         spent.calls += 1;
         Ok(())
     }

@@ -62,6 +62,24 @@ pub enum LedgerError {
         /// The system's error.
         source: Arc<std::io::Error>,
     },
+    /// A line of a chunk's file cannot be read.
+    #[error("{}: line {line}: {reason}\nhint: put a copy of the file in its place, or move it away: then its calls are made again", path.display())]
+    Chunk {
+        /// The file.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The program uses the ledger in a way in which it cannot be used.
+    #[error("{place}: {reason}\nhint: this is a fault of the program: please report it")]
+    Misuse {
+        /// The file or the database.
+        place: Place,
+        /// What is wrong.
+        reason: &'static str,
+    },
     /// A line of a recording cannot be read.
     #[error("{}: line {line}: {reason}\nhint: record the calls again with --record, or use the version that recorded them", path.display())]
     Recording {

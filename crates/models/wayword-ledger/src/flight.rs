@@ -37,6 +37,12 @@ impl Flights {
         drop(other.signal.wait_while(done, |done| !*done).unwrap_or_else(PoisonError::into_inner));
         None
     }
+
+    /// Does something while no call is made and none can begin; `None` if one is being made.
+    pub(crate) fn while_none<T>(&self, act: impl FnOnce() -> T) -> Option<T> {
+        let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.is_empty().then(act)
+    }
 }
 
 impl Drop for Flight<'_> {

@@ -1,20 +1,16 @@
 //! A ledger: a file, or one in memory, or one that answers from a recording alone.
 
 use crate::{
-    LedgerError, Row,
+    LedgerError, Spending,
     flight::Flights,
-    store::{Sqlite, Store, may_hold},
+    recording,
+    store::{Chunks, Sqlite, Store, may_hold, spent_in},
 };
 use std::{
-    fs::File,
-    io::{BufRead, BufReader, Read},
     path::{Path, PathBuf},
     sync::Arc,
     time::{SystemTime, UNIX_EPOCH},
 };
-
-/// Longest line of a recording that is read, bytes.
-const MOST_LINE_BYTES: u64 = 16 << 20;
 
 /// The calls of all runs. Clones share one ledger. When the last clone is dropped, all pending writes are finished.
 #[derive(Debug, Clone)]
@@ -61,9 +57,46 @@ impl Ledger {
     /// When the recording cannot be read.
     pub fn replay(recording: &Path) -> Result<Self, LedgerError> {
         let store = Sqlite::in_memory()?;
-        read(recording, |row| store.fill(row))?;
+        recording::read(recording, |row| store.fill(row))?;
         store.flush()?;
         Ok(Self::of(store, Some(recording.to_owned())))
+    }
+
+    /// A ledger of one shard of a run, whose chunks are worked on one after the other. Each has one file, to which
+    /// requests and answers are appended: it may be on a network file system. The limits of a run hold over all chunks
+    /// together. `earlier` are the files of the other chunks: what was spent there counts, and their answers are not
+    /// read. A file that does not exist is empty.
+    ///
+    /// Call [`Ledger::turn_to`] before the first call. The caller sees to it that one program at a time writes a file.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or was changed.
+    pub fn in_chunks(earlier: &[PathBuf]) -> Result<Self, LedgerError> {
+        Ok(Self::of(Chunks::open(earlier)?, None))
+    }
+
+    /// Goes on with the file of another chunk, or makes it. The answers of the chunk before are no longer found. The end
+    /// of a line that a crash has torn is cut off: its request had not been sent, or its answer not been used.
+    ///
+    /// Only for a ledger of [`Ledger::in_chunks`], between the calls of one chunk and those of the next.
+    ///
+    /// # Errors
+    /// When calls are in flight, the file cannot be read and written, or a line was changed.
+    pub fn turn_to(&self, file: &Path) -> Result<(), LedgerError> {
+        let turned = self.flights().while_none(|| self.store().turn_to(file));
+        turned.unwrap_or_else(|| {
+            let reason = "it cannot be left for another chunk while calls are in flight";
+            Err(LedgerError::Misuse { place: self.store().place(), reason })
+        })
+    }
+
+    /// What was spent in the file of a chunk. Changes nothing, so another program may be writing it. A file that does
+    /// not exist is empty.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or was changed.
+    pub fn spent_in(file: &Path) -> Result<Spending, LedgerError> {
+        spent_in(file)
     }
 
     fn of(store: impl Store + 'static, recording: Option<PathBuf>) -> Self {
@@ -81,30 +114,6 @@ impl Ledger {
     pub(crate) fn recording(&self) -> Option<&Path> {
         self.inner.recording.as_deref()
     }
-}
-
-/// Passes every row of a recording to `take`. A run or an export wrote these lines.
-fn read(path: &Path, take: impl Fn(Row)) -> Result<(), LedgerError> {
-    let failed = LedgerError::io(path, "read the recording");
-    let mut reader = BufReader::new(File::open(path).map_err(&failed)?);
-    let mut bytes = Vec::new();
-    for line in 1.. {
-        let broken = |reason: String| LedgerError::Recording { path: path.to_owned(), line, reason };
-        bytes.clear();
-        reader.by_ref().take(MOST_LINE_BYTES + 1).read_until(b'\n', &mut bytes).map_err(&failed)?;
-        if bytes.is_empty() {
-            break;
-        }
-        if bytes.len() as u64 > MOST_LINE_BYTES {
-            return Err(broken(format!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
-        }
-        let row: Row = serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
-        if row.call.key() != row.key {
-            return Err(broken("its key does not match its call, so the line was changed by hand".to_owned()));
-        }
-        take(row);
-    }
-    Ok(())
 }
 
 /// Seconds since 1970.

@@ -17,6 +17,7 @@ mod flight;
 mod ledger;
 mod place;
 mod queries;
+mod recording;
 mod run;
 mod stopper;
 mod store;

@@ -60,6 +60,18 @@ pub struct Spending {
     pub maybe_usd: f64,
 }
 
+impl Spending {
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            requests: self.requests.saturating_add(other.requests),
+            answered: self.answered.saturating_add(other.answered),
+            lost: self.lost.saturating_add(other.lost),
+            usd: self.usd + other.usd,
+            maybe_usd: self.maybe_usd + other.maybe_usd,
+        }
+    }
+}
+
 impl Ledger {
     /// Lists calls, the latest first.
     ///

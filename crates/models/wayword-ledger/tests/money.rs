@@ -2,10 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use proptest::prelude::*;
+mod common;
+
+use common::{Store, stores};
+use proptest::{prelude::*, test_runner::TestRunner};
 use serde_json::json;
-use std::{sync::Mutex, thread};
-use wayword_ledger::{Answer, Call, Ledger, Limits, OnceError, Refused, Run};
+use std::{cell::Cell, sync::Mutex, thread};
+use wayword_ledger::{Answer, Call, Limits, OnceError, Refused, Run};
 
 /// How a request ends.
 #[derive(Debug, Clone, Copy)]
@@ -34,15 +37,7 @@ fn ask_watched(
         match end {
             End::Answered(usd) => {
                 watch(usd.unwrap_or(0.0) - most_usd.unwrap_or(0.0));
-                Ok(Answer {
-                    text: "yes".into(),
-                    finish: "stop".into(),
-                    tokens_in: 1,
-                    tokens_out: 1,
-                    usd,
-                    latency_ms: 1,
-                    attempts: 1,
-                })
+                Ok(common::answer("yes", usd))
             }
             End::Failed { maybe_paid } => {
                 if !maybe_paid {
@@ -62,80 +57,104 @@ fn end(most_usd: f64) -> impl Strategy<Value = End> {
     ]
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-    /// While eight threads ask, the sum of what is paid, maybe paid and in flight stays below the limit. So does the
-    /// number of requests. A later process of the run knows both.
-    #[test]
-    fn nothing_leaves_that_could_break_a_limit(
-        max_usd in 0.0..2.0f64,
-        max_calls in 0u64..60,
-        asked in prop::collection::vec((0.0..0.2f64).prop_flat_map(|most| (Just(most), end(most))), 64),
-    ) {
-        let ledger = Ledger::in_memory().unwrap();
-        let limits = Limits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
-        let run = ledger.run("a", limits).unwrap();
-        let (exposed, most_exposed) = (Mutex::new(0.0), Mutex::new(0.0f64));
-        let watch = |usd: f64| {
-            let mut exposed = exposed.lock().unwrap();
-            *exposed += usd;
-            let mut most = most_exposed.lock().unwrap();
-            *most = most.max(*exposed);
-        };
-        thread::scope(|scope| {
-            for (thread, asked) in asked.chunks(8).enumerate() {
-                let (run, watch) = (&run, &watch);
-                scope.spawn(move || {
-                    for (step, (most_usd, end)) in asked.iter().enumerate() {
-                        drop(ask_watched(run, thread * 8 + step, Some(*most_usd), *end, watch));
-                    }
-                });
-            }
+/// While eight threads ask, the sum of what is paid, maybe paid and in flight stays below the limit. So does the number
+/// of requests. A later process of the run knows both.
+#[test]
+fn nothing_leaves_that_could_break_a_limit() {
+    let asked = prop::collection::vec((0.0..0.2f64).prop_flat_map(|most| (Just(most), end(most))), 64);
+    let inputs = (0.0..2.0f64, 0u64..60, asked);
+    for store in stores("nothing_leaves_that_could_break_a_limit") {
+        let config =
+            ProptestConfig { cases: if store.kind() == "sqlite" { 24 } else { 6 }, ..ProptestConfig::default() };
+        let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..config });
+        let case = Cell::new(0);
+        // Each case is a run of its own.
+        let tried = runner.run(&inputs, |(max_usd, max_calls, asked)| {
+            case.set(case.get() + 1);
+            holds(&store, case.get(), max_usd, max_calls, &asked)
         });
-        prop_assert!(*most_exposed.lock().unwrap() <= max_usd + 1e-6);
-        let totals = run.totals();
-        prop_assert!(totals.calls <= max_calls);
-        let left = max_usd - totals.usd - totals.maybe_usd;
-        let again = ledger.run("a", limits).unwrap();
-        let too_much = ask(&again, 1000, Some(left + 0.001), End::Answered(Some(0.0)));
-        let refused = matches!(too_much, Err(OnceError::Call(Refused::MaxUsd { .. } | Refused::MaxCalls { .. })));
-        prop_assert!(refused, "{too_much:?}");
-        if totals.calls < max_calls {
-            let fits = ask(&again, 1001, Some((left - 0.001).max(0.0)), End::Answered(Some(0.0)));
-            prop_assert!(fits.is_ok(), "{fits:?}");
-        }
+        tried.unwrap_or_else(|error| panic!("{}: {error}", store.kind()));
     }
+}
+
+/// The test above for one run.
+fn holds(store: &Store, case: usize, max_usd: f64, max_calls: u64, asked: &[(f64, End)]) -> Result<(), TestCaseError> {
+    let ledger = store.open();
+    let limits = Limits { max_usd: Some(max_usd), max_calls: Some(max_calls) };
+    let name = format!("run {case}");
+    let run = ledger.run(&name, limits).unwrap();
+    let (exposed, most_exposed) = (Mutex::new(0.0), Mutex::new(0.0f64));
+    let watch = |usd: f64| {
+        let mut exposed = exposed.lock().unwrap();
+        *exposed += usd;
+        let mut most = most_exposed.lock().unwrap();
+        *most = most.max(*exposed);
+    };
+    let first = case * 10_000;
+    thread::scope(|scope| {
+        for (thread, asked) in asked.chunks(8).enumerate() {
+            let (run, watch) = (&run, &watch);
+            scope.spawn(move || {
+                for (step, (most_usd, end)) in asked.iter().enumerate() {
+                    drop(ask_watched(run, first + thread * 8 + step, Some(*most_usd), *end, watch));
+                }
+            });
+        }
+    });
+    prop_assert!(*most_exposed.lock().unwrap() <= max_usd + 1e-6);
+    let totals = run.totals();
+    prop_assert!(totals.calls <= max_calls);
+    let spending = ledger.spending(&name).unwrap();
+    prop_assert_eq!(
+        (spending.requests, spending.answered, spending.lost),
+        (totals.calls, totals.answered, totals.lost)
+    );
+    prop_assert!((spending.usd + spending.maybe_usd - totals.usd - totals.maybe_usd).abs() < 1e-6);
+    let left = max_usd - totals.usd - totals.maybe_usd;
+    let again = ledger.run(&name, limits).unwrap();
+    let too_much = ask(&again, first + 1000, Some(left + 0.001), End::Answered(Some(0.0)));
+    let refused = matches!(too_much, Err(OnceError::Call(Refused::MaxUsd { .. } | Refused::MaxCalls { .. })));
+    prop_assert!(refused, "{too_much:?}");
+    if totals.calls < max_calls {
+        let fits = ask(&again, first + 1001, Some((left - 0.001).max(0.0)), End::Answered(Some(0.0)));
+        prop_assert!(fits.is_ok(), "{fits:?}");
+    }
+    Ok(())
 }
 
 #[test]
 fn a_price_that_is_no_amount_is_no_price() {
-    let run = Ledger::in_memory().unwrap().run("a", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
-    for most_usd in [f64::NAN, f64::INFINITY, -1.0] {
-        let refused = ask(&run, 0, Some(most_usd), End::Answered(Some(0.0)));
-        assert!(matches!(refused, Err(OnceError::Call(Refused::NoPrice))), "{most_usd}: {refused:?}");
+    for store in stores("a_price_that_is_no_amount_is_no_price") {
+        let run = store.open().run("a", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
+        for most_usd in [f64::NAN, f64::INFINITY, -1.0] {
+            let refused = ask(&run, 0, Some(most_usd), End::Answered(Some(0.0)));
+            assert!(matches!(refused, Err(OnceError::Call(Refused::NoPrice))), "{most_usd}: {refused:?}");
+        }
+        // The same goes for an answer's price: its upper bound counts instead.
+        for (number, usd) in [None, Some(f64::NAN), Some(-5.0)].into_iter().enumerate() {
+            ask(&run, number, Some(0.3), End::Answered(usd)).unwrap();
+        }
+        let refused = ask(&run, 9, Some(0.2), End::Answered(Some(0.0)));
+        assert!(matches!(refused, Err(OnceError::Call(Refused::MaxUsd { .. }))), "{refused:?}");
+        assert!(run.totals().usd.abs() < 1e-9);
     }
-    // The same goes for an answer's price: its upper bound counts instead.
-    for (number, usd) in [None, Some(f64::NAN), Some(-5.0)].into_iter().enumerate() {
-        ask(&run, number, Some(0.3), End::Answered(usd)).unwrap();
-    }
-    let refused = ask(&run, 9, Some(0.2), End::Answered(Some(0.0)));
-    assert!(matches!(refused, Err(OnceError::Call(Refused::MaxUsd { .. }))), "{refused:?}");
-    assert!(run.totals().usd.abs() < 1e-9);
 }
 
 #[test]
 fn a_limit_that_is_no_amount_lets_nothing_out() {
-    let run = Ledger::in_memory().unwrap().run("a", Limits { max_usd: Some(f64::NAN), max_calls: None }).unwrap();
-    assert!(matches!(ask(&run, 0, Some(0.1), End::Answered(None)), Err(OnceError::Call(Refused::MaxUsd { .. }))));
+    for store in stores("a_limit_that_is_no_amount_lets_nothing_out") {
+        let run = store.open().run("a", Limits { max_usd: Some(f64::NAN), max_calls: None }).unwrap();
+        assert!(matches!(ask(&run, 0, Some(0.1), End::Answered(None)), Err(OnceError::Call(Refused::MaxUsd { .. }))));
+    }
 }
 
 #[test]
 fn an_answer_without_a_price_counts_at_its_upper_bound_later_too() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("l.db");
-    let limits = Limits { max_usd: Some(1.0), max_calls: None };
-    ask(&Ledger::open(&path).unwrap().run("a", limits).unwrap(), 0, Some(0.8), End::Answered(None)).unwrap();
-    let again = Ledger::open(&path).unwrap().run("a", limits).unwrap();
-    assert!(ask(&again, 1, Some(0.3), End::Answered(Some(0.1))).is_err());
-    assert!(ask(&again, 1, Some(0.1), End::Answered(Some(0.1))).is_ok());
+    for store in stores("an_answer_without_a_price_counts_at_its_upper_bound_later_too") {
+        let limits = Limits { max_usd: Some(1.0), max_calls: None };
+        ask(&store.open().run("a", limits).unwrap(), 0, Some(0.8), End::Answered(None)).unwrap();
+        let again = store.open().run("a", limits).unwrap();
+        assert!(ask(&again, 1, Some(0.3), End::Answered(Some(0.1))).is_err());
+        assert!(ask(&again, 1, Some(0.1), End::Answered(Some(0.1))).is_ok());
+    }
 }

@@ -2,19 +2,27 @@
 //!
 //! Architecture invariant: what a store says it has written survives the end of the program, and a loss of power too.
 
+mod chunks;
 mod sqlite;
 
 use crate::{
     Answer, By, CostLine, Filter, Key, LedgerError, Limits, Place, Refused, Row, Spending, budget::Spent, run::Sent,
 };
-use std::fmt;
+use serde::{Deserialize, Serialize};
+use std::{fmt, path::Path};
 
+pub(crate) use chunks::{Chunks, Entry, spent_in};
 pub(crate) use sqlite::{Sqlite, may_hold};
 
 /// Keeps calls, requests, and what runs have spent. Every function may be called by many threads at once.
 pub(crate) trait Store: fmt::Debug + Send + Sync {
     /// Where it is, for messages.
     fn place(&self) -> Place;
+
+    /// Goes on with the file of another chunk.
+    fn turn_to(&self, _path: &Path) -> Result<(), LedgerError> {
+        Err(LedgerError::Misuse { place: self.place(), reason: "this ledger has no chunks" })
+    }
 
     /// The answer of a call, if it has one. Notes that the run has used it.
     fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError>;
@@ -43,7 +51,7 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     /// Returns once everything that was to be written later is written.
     fn flush(&self) -> Result<(), LedgerError>;
 
-    /// Whether the store itself keeps to the limits of runs, because several programs make one run.
+    /// Whether the store itself keeps to the limits of runs: several programs make one run, or a run has several files.
     fn keeps_budget(&self) -> bool {
         false
     }
@@ -92,7 +100,8 @@ pub(crate) struct Request<'a> {
 }
 
 /// How a request without an answer ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum End {
     /// It was not sent after all.
     Cancelled,

@@ -1,0 +1,44 @@
+//! Reads a recording: the lines of an export, or of a chunk's file.
+
+use crate::{LedgerError, Row, store::Entry};
+use std::{
+    fs::File,
+    io::{BufRead, BufReader, Read},
+    path::Path,
+};
+
+/// Longest line of a recording that is read, bytes.
+pub(crate) const MOST_LINE_BYTES: u64 = 16 << 20;
+
+/// Passes every call of a recording to `take`. A run, an export or a worker wrote these lines.
+pub(crate) fn read(path: &Path, take: impl Fn(Row)) -> Result<(), LedgerError> {
+    let failed = LedgerError::io(path, "read the recording");
+    let mut reader = BufReader::new(File::open(path).map_err(&failed)?);
+    let mut bytes = Vec::new();
+    let mut is_chunk = false;
+    for line in 1.. {
+        let broken = |reason: String| LedgerError::Recording { path: path.to_owned(), line, reason };
+        bytes.clear();
+        reader.by_ref().take(MOST_LINE_BYTES + 1).read_until(b'\n', &mut bytes).map_err(&failed)?;
+        let is_torn = is_chunk && bytes.last() != Some(&b'\n');
+        if bytes.is_empty() || is_torn {
+            break;
+        }
+        if bytes.len() as u64 > MOST_LINE_BYTES {
+            return Err(broken(format!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
+        }
+        if Entry::is_line(&bytes) {
+            is_chunk = true;
+            if let Entry::Answered { row, .. } = Entry::of_line(&bytes).map_err(broken)? {
+                take(*row);
+            }
+            continue;
+        }
+        let row: Row = serde_json::from_slice(&bytes).map_err(|error| broken(error.to_string()))?;
+        if row.call.key() != row.key {
+            return Err(broken("its key does not match its call, so the line was changed by hand".to_owned()));
+        }
+        take(row);
+    }
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! A line of a chunk's file: JSON with a checksum of everything behind it.
+
+use crate::{Key, Row, store::End};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// Version of the lines.
+pub(super) const FORMAT: u32 = 1;
+
+/// How every line begins.
+const BEGIN: &str = "{\"sha256\":\"";
+/// Hexadecimal digits of a checksum.
+const DIGITS: usize = 64;
+/// What stands between the checksum and what it covers.
+const MIDDLE: &str = "\",";
+
+/// What a line says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Entry {
+    /// The first line of a file.
+    Ledger { format: u32 },
+    /// A request is about to be sent.
+    Sent { number: i64, run: String, key: Key, most_usd: Option<f64>, at_unix_s: i64 },
+    /// A request brought no answer.
+    Ended { number: i64, outcome: End, reason: String },
+    /// A call was answered.
+    Answered { number: Option<i64>, row: Box<Row> },
+}
+
+impl Entry {
+    /// Its line, with the end of the line.
+    pub(super) fn to_line(&self) -> serde_json::Result<Vec<u8>> {
+        let json = serde_json::to_vec(self)?;
+        let rest = json.get(1..).unwrap_or_default();
+        let mut line = format!("{BEGIN}{}{MIDDLE}", digits(rest)).into_bytes();
+        line.extend_from_slice(rest);
+        line.push(b'\n');
+        Ok(line)
+    }
+
+    /// Whether bytes begin as a line of a chunk's file does.
+    pub(crate) fn is_line(bytes: &[u8]) -> bool {
+        bytes.starts_with(BEGIN.as_bytes())
+    }
+
+    /// Reads a line, with or without the end of the line.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub(crate) fn of_line(line: &[u8]) -> Result<Self, String> {
+        let line = line.strip_suffix(b"\n").unwrap_or(line);
+        let changed = || "its checksum does not match, so the line was changed by hand or damaged".to_owned();
+        let behind = line.strip_prefix(BEGIN.as_bytes()).ok_or("it is no line of a recording in chunks")?;
+        let (checksum, rest) = behind.split_at_checked(DIGITS).ok_or_else(changed)?;
+        let rest = rest.strip_prefix(MIDDLE.as_bytes()).ok_or_else(changed)?;
+        if checksum != digits(rest).as_bytes() {
+            return Err(changed());
+        }
+        let json = [b"{", rest].concat();
+        let entry: Self = serde_json::from_slice(&json).map_err(|error| error.to_string())?;
+        match &entry {
+            Self::Answered { row, .. } if row.call.key() != row.key => {
+                Err("its key does not match its call, so the line was changed by hand".to_owned())
+            }
+            _ => Ok(entry),
+        }
+    }
+}
+
+fn digits(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_line_says_what_was_written_and_any_change_is_noticed(
+            reason in ".{0,30}",
+            number: i64,
+            at in 0.0..1.0f64,
+            bit in 0u8..8,
+        ) {
+            let entry = Entry::Ended { number, outcome: End::Lost, reason };
+            let mut line = entry.to_line().unwrap();
+            prop_assert_eq!(line.iter().filter(|byte| **byte == b'\n').count(), 1);
+            prop_assert_eq!(Entry::of_line(&line), Ok(entry));
+            let at = (at * (line.len() - 1) as f64) as usize;
+            line[at] ^= 1 << bit;
+            prop_assert!(Entry::of_line(&line).is_err());
+        }
+    }
+}
