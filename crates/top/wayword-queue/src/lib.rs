@@ -8,6 +8,8 @@
 //! This crate knows chunks by their numbers. What an item is, and how it is made, is the caller's.
 
 mod board;
+#[cfg(feature = "cloud")]
+pub mod cloud;
 mod done;
 mod error;
 mod folder;

@@ -1,0 +1,165 @@
+//! What an error of a store means.
+
+use super::CloudError;
+use object_store::client::{HttpError, HttpErrorKind};
+use std::{error::Error, io};
+
+const ASK: &str = "see what the store's own log says, and check the address";
+
+/// Codes of answers that say that the credentials are not known. They come with 400, 401 or 403.
+const BAD_CREDENTIALS: [&str; 9] = [
+    "InvalidAccessKeyId",
+    "SignatureDoesNotMatch",
+    "ExpiredToken",
+    "InvalidToken",
+    "TokenRefreshRequired",
+    "AuthenticationFailed",
+    "InvalidAuthenticationInfo",
+    "NoAuthenticationInformation",
+    "AuthorizationHeaderMalformed",
+];
+
+/// Codes of answers that say that there is no bucket.
+const NO_BUCKET: [&str; 4] =
+    ["NoSuchBucket", "ContainerNotFound", "ContainerBeingDeleted", "The specified bucket does not exist"];
+
+/// Texts of object_store when it finds no credentials. They are compared and never shown.
+const NO_CREDENTIALS: [&str; 7] = [
+    "instance metadata",
+    "169.254.169.254",
+    "metadata.google.internal",
+    "getting credentials",
+    "Account must be specified",
+    "MissingAccount",
+    "application_default_credentials",
+];
+
+/// The error of a caller, without the texts of servers.
+pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
+    use object_store::Error as E;
+    // Every level has its own text; the variables of a level can be in its debugging text alone.
+    let text = format!("{error} {error:?}");
+    let has = |codes: &[&str]| codes.iter().any(|code| text.contains(code));
+    let at = at.to_owned();
+    let answer = answer(&text);
+    if has(&NO_BUCKET) {
+        return CloudError::NoBucket { bucket: at };
+    }
+    if has(&BAD_CREDENTIALS) || has(&NO_CREDENTIALS) || matches!(error, E::Unauthenticated { .. }) {
+        return CloudError::Credentials { at, answer };
+    }
+    if matches!(error, E::NotFound { .. }) {
+        return CloudError::Refused { at, doing, answer: "it is not there".to_owned(), hint: ASK };
+    }
+    if matches!(error, E::PermissionDenied { .. }) || system(error) == Some(io::ErrorKind::PermissionDenied) {
+        return CloudError::Permission { at, doing, answer };
+    }
+    if let Some(problem) = network(error).or_else(|| busy(&text)) {
+        return CloudError::Network { at, doing, problem: problem.to_owned() };
+    }
+    if text.contains("incorrectly configured region") || text.contains("PermanentRedirect") {
+        let hint = "set AWS_REGION to the region of the bucket";
+        return CloudError::Refused { at, doing, answer: "the bucket is in another region".to_owned(), hint };
+    }
+    CloudError::Refused { at, doing, answer, hint: ASK }
+}
+
+/// Whether the store says that it has no conditional writes.
+pub(super) fn is_not_implemented(error: &object_store::Error) -> bool {
+    use object_store::Error as E;
+    matches!(error, E::NotImplemented { .. } | E::NotSupported { .. }) || {
+        let text = error.to_string();
+        text.contains("<Code>NotImplemented</Code>") || status(&text) == Some("501")
+    }
+}
+
+/// Whether another writer was at the same object at this moment, and nobody has won yet.
+pub(super) fn is_conflict(error: &object_store::Error) -> bool {
+    error.to_string().contains("ConditionalRequestConflict")
+}
+
+fn chain<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
+    // No error has so many levels; a loop in one must not hang the program.
+    std::iter::successors(Some(error), |level: &&'a (dyn Error + 'static)| (*level).source()).take(32)
+}
+
+fn system(error: &object_store::Error) -> Option<io::ErrorKind> {
+    chain(error).find_map(|level| Some(level.downcast_ref::<io::Error>()?.kind()))
+}
+
+fn network(error: &object_store::Error) -> Option<&'static str> {
+    let kind = chain(error).find_map(|level| Some(level.downcast_ref::<HttpError>()?.kind()))?;
+    Some(match kind {
+        HttpErrorKind::Connect => "no connection",
+        HttpErrorKind::Timeout => "no answer in time",
+        HttpErrorKind::Interrupted | HttpErrorKind::Request => "the connection broke",
+        HttpErrorKind::Decode => "the answer cannot be read",
+        _ => "the request failed",
+    })
+}
+
+fn busy(text: &str) -> Option<&'static str> {
+    match status(text)? {
+        "429" | "503" => Some("the store is overloaded"),
+        "500" | "502" | "504" => Some("the store has a failure"),
+        _ => None,
+    }
+}
+
+fn status(text: &str) -> Option<&str> {
+    let digits = text.split_once("status code: ")?.1.get(..3)?;
+    digits.bytes().all(|byte| byte.is_ascii_digit()).then_some(digits)
+}
+
+/// The status and the code of an answer. Both have a form in which no secret fits: digits, and a word of letters.
+fn answer(text: &str) -> String {
+    let code = text
+        .split_once("<Code>")
+        .and_then(|(_, rest)| rest.split_once("</Code>"))
+        .map(|(code, _)| code)
+        .filter(|code| (1..=40).contains(&code.len()) && code.bytes().all(|byte| byte.is_ascii_alphabetic()));
+    match (status(text), code) {
+        (Some(status), Some(code)) => format!("answer {status} {code}"),
+        (Some(status), None) => format!("answer {status}"),
+        (None, Some(code)) => format!("answer {code}"),
+        (None, None) => "no further answer".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CloudError, of};
+    use object_store::Error;
+
+    fn generic(text: &str) -> Error {
+        Error::Generic { store: "S3", source: text.to_owned().into() }
+    }
+
+    #[test]
+    fn an_answer_is_known_by_its_code_and_never_repeated() {
+        let body = "status code: 403 Forbidden: <Error><Code>SignatureDoesNotMatch</Code><AWSAccessKeyId>AKIASECRET</AWSAccessKeyId>";
+        let error = of("s3://b/a", "write it", &generic(body));
+        assert!(matches!(error, CloudError::Credentials { .. }));
+        let text = format!("{error} {error:?}");
+        assert!(!text.contains("AKIASECRET") && text.contains("answer 403 SignatureDoesNotMatch"), "{text}");
+    }
+
+    #[test]
+    fn a_missing_bucket_is_told_from_a_missing_object() {
+        let source = || "status code: 404: <Code>NoSuchBucket</Code>".into();
+        let error = of("s3://b/a", "read it", &Error::NotFound { path: "a".into(), source: source() });
+        assert!(matches!(error, CloudError::NoBucket { .. }));
+    }
+
+    #[test]
+    fn an_overloaded_store_may_work_later() {
+        assert!(of("s3://b/a", "write it", &generic("status code: 503 Slow Down")).is_lost());
+        assert!(!of("s3://b/a", "write it", &generic("status code: 400 Bad")).is_lost());
+    }
+
+    #[test]
+    fn a_code_that_could_hide_a_key_is_left_out() {
+        let error = of("s3://b/a", "write it", &generic("status code: 400: <Code>key=AKIA12345</Code>"));
+        assert!(!error.to_string().contains("AKIA"), "{error}");
+    }
+}

@@ -1,0 +1,104 @@
+//! What a store that is not there, or refuses, looks like. A server of this test answers; the variables of the provider name it.
+
+#![cfg(all(feature = "cloud", unix))]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::{
+    io::{Read, Write},
+    net::TcpListener,
+    process::Command,
+};
+use wayword_queue::cloud::{Bucket, CloudError};
+
+const SECRET: &str = "hunter2hunter2";
+
+/// Runs one test of this file in a process of its own, because the variables are of the process.
+fn in_a_process(test: &str, endpoint: &str) {
+    let run = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", test, "--ignored", "--nocapture"])
+        .env("AWS_ENDPOINT_URL", endpoint)
+        .env("AWS_ALLOW_HTTP", "true")
+        .env("AWS_ACCESS_KEY_ID", "AKIAHIDDEN")
+        .env("AWS_SECRET_ACCESS_KEY", SECRET)
+        .env("AWS_REGION", "us-east-1")
+        .output()
+        .unwrap();
+    let text = format!("{}{}", String::from_utf8_lossy(&run.stdout), String::from_utf8_lossy(&run.stderr));
+    assert!(run.status.success() && text.contains("1 passed"), "{text}");
+    assert!(!text.contains(SECRET) && !text.contains("AKIAHIDDEN"), "{text}");
+}
+
+/// Answers every request in the same way.
+fn server(status: &'static str, body: &'static str) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = format!("http://{}", listener.local_addr().unwrap());
+    std::thread::spawn(move || {
+        for stream in listener.incoming() {
+            let mut stream = stream.unwrap();
+            let _ = stream.read(&mut [0; 65536]);
+            let length = body.len();
+            let _ = write!(stream, "HTTP/1.1 {status}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n{body}");
+        }
+    });
+    address
+}
+
+#[test]
+fn a_refusal_is_an_error_of_its_kind_without_the_text_of_the_server() {
+    let forbidden = "<Error><Code>AccessDenied</Code><Key>AKIAHIDDEN hunter2hunter2</Key></Error>";
+    in_a_process("says_no_permission", &server("403 Forbidden", forbidden));
+    let unknown = "<Error><Code>InvalidAccessKeyId</Code><Key>AKIAHIDDEN hunter2hunter2</Key></Error>";
+    in_a_process("says_no_credentials", &server("403 Forbidden", unknown));
+    in_a_process("says_no_bucket", &server("404 Not Found", "<Error><Code>NoSuchBucket</Code></Error>"));
+}
+
+#[test]
+fn a_store_without_conditional_writes_says_what_to_do() {
+    let body = "<Error><Code>NotImplemented</Code><Header>If-None-Match</Header></Error>";
+    in_a_process("says_no_put_new", &server("501 Not Implemented", body));
+}
+
+#[test]
+fn a_store_that_ignores_the_condition_is_found_out() {
+    in_a_process("check_says_no_put_new", &server("200 OK\r\nETag: \"a\"", ""));
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_permission() {
+    let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
+    assert!(matches!(error, CloudError::Permission { .. }), "{error:?}");
+    assert!(error.to_string().contains("s3://bucket/a/b"), "{error}");
+    println!("{error} {error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_credentials() {
+    let error = Bucket::open("s3://bucket/a").unwrap().get("b", 1).unwrap_err();
+    assert!(matches!(error, CloudError::Credentials { .. }), "{error:?}");
+    println!("{error} {error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_bucket() {
+    let bucket = Bucket::open("s3://bucket/a").unwrap();
+    for error in [bucket.get("b", 1).unwrap_err(), bucket.put("b", "x").unwrap_err(), bucket.list("").unwrap_err()] {
+        assert!(matches!(error, CloudError::NoBucket { .. }), "{error:?}");
+    }
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_put_new() {
+    let error = Bucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
+    assert!(matches!(error, CloudError::NoPutNew { .. }), "{error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn check_says_no_put_new() {
+    let error = Bucket::open("s3://bucket/a").unwrap().check_put_new().unwrap_err();
+    assert!(matches!(error, CloudError::NoPutNew { .. }), "{error:?}");
+}
