@@ -1,6 +1,6 @@
 //! Fetches what is below a prefix into a folder.
 
-use super::{Bucket, CloudError, Entry, bucket, index::Index, names};
+use super::{Bucket, CloudError, Entry, bucket, index::Index, lock::Lock, names};
 use futures_util::{StreamExt, stream};
 use object_store::{GetOptions, GetRange, ObjectStore};
 use std::{
@@ -41,12 +41,14 @@ struct Fetching<'a> {
     local: &'a Path,
     progress: &'a dyn Fn(u64, u64),
     all_bytes: u64,
+    /// What a file's name ends in until the file is whole.
+    ending: String,
 }
 
 impl Bucket {
     /// Fetches all objects below the prefix `name` (all of the bucket, if it is empty) into a folder, several at a time. A file that
     /// was fetched before is kept, if its size and the object's version are the same ([`INDEX`] says so). Each file is whole or absent.
-    /// Files that are no longer in the store stay. `progress` gets the bytes that are there, and all bytes.
+    /// Files that are no longer in the store stay. Where several programs fetch into the same folder, one does and the others wait. `progress` gets the bytes that are there, and all bytes.
     ///
     /// # Errors
     /// When there are more than `most_bytes`, a name leaves the folder, an object changes meanwhile, the store cannot be used,
@@ -64,8 +66,9 @@ impl Bucket {
             return Err(CloudError::TooLarge { at: self.shown(name), bytes: all_bytes, most: most_bytes });
         }
         fs::create_dir_all(local).map_err(CloudError::local(local, "make this folder"))?;
+        let lock = Lock::wait(local)?;
         let mut index = Index::read(local, &self.shown(name))?;
-        let fetching = Fetching { bucket: self, name, local, progress, all_bytes };
+        let fetching = Fetching { bucket: self, name, local, progress, all_bytes, ending: lock.ending() };
         let (kept, missing): (Vec<_>, Vec<_>) = entries.iter().partition(|entry| index.has(local, entry));
         let done = kept.iter().map(|entry| entry.bytes).sum();
         progress(done, all_bytes);
@@ -101,8 +104,13 @@ impl Fetching<'_> {
         let relative = names::file_of(&entry.name)?;
         let path = self.local.join(&relative);
         make_parents(self.local, &relative)?;
-        let part = beside(&path);
-        let got = match File::create(&part).map_err(CloudError::local(&part, "write")) {
+        let mut part = path.clone().into_os_string();
+        part.push(&self.ending);
+        let part = PathBuf::from(part);
+        // What a fetch that was killed has left, or a link.
+        let _ = fs::remove_file(&part);
+        let made = File::options().write(true).create_new(true).open(&part);
+        let got = match made.map_err(CloudError::local(&part, "write")) {
             Ok(file) => self.fill(entry, &part, file).await,
             Err(error) => Err(error),
         };
@@ -162,7 +170,7 @@ fn below(prefix: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, CloudError> {
             entry.name = rest.to_owned();
         }
         names::file_of(&entry.name)?;
-        if entry.name == INDEX {
+        if entry.name.starts_with(INDEX) {
             return Err(names::wrong(&entry.name, "is kept for the list of what was fetched"));
         }
         inside.push(entry);
@@ -200,10 +208,4 @@ fn make_parents(local: &Path, relative: &Path) -> Result<(), CloudError> {
 
 fn is_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|about| about.is_dir())
-}
-
-fn beside(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    name.into()
 }

@@ -29,6 +29,7 @@ mod bucket;
 mod error;
 mod fetch;
 mod index;
+mod lock;
 mod names;
 mod send;
 mod trouble;

@@ -38,7 +38,7 @@ struct Item {
 
 impl Bucket {
     /// Sends every plain file of a folder and of the folders in it, below the prefix `name`, several at a time. Links are
-    /// neither followed nor sent. What is there under the same names is overwritten, so that the same call again does no harm; give
+    /// neither followed nor sent, nor is the list of what was fetched ([`INDEX`]). What is there under the same names is overwritten, so that the same call again does no harm; give
     /// each attempt a prefix of its own.
     ///
     /// A crash leaves some of the files there, each of them whole. Say by [`Bucket::put_new`] of another object that all are.
@@ -135,7 +135,7 @@ fn files_of(local: &Path, name: &str) -> Result<Vec<Item>, CloudError> {
             if about.is_dir() {
                 names::check(&name)?;
                 folders.push((path, name));
-            } else if about.is_file() && !(last == INDEX && folder == local) {
+            } else if about.is_file() && !(folder == local && last.starts_with(INDEX)) {
                 names::check(&name)?;
                 let bytes = inside.metadata().map_err(CloudError::local(&path, "read"))?.len();
                 items.push(Item { path, name, bytes });
