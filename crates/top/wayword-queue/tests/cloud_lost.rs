@@ -14,10 +14,14 @@ const SECRET: &str = "hunter2hunter2";
 
 /// Runs one test of this file in a process of its own, because the variables are of the process.
 fn in_a_process(test: &str, endpoint: &str) {
+    with_http(test, endpoint, "true");
+}
+
+fn with_http(test: &str, endpoint: &str, allow_http: &str) {
     let run = Command::new(std::env::current_exe().unwrap())
         .args(["--exact", test, "--ignored", "--nocapture"])
         .env("AWS_ENDPOINT_URL", endpoint)
-        .env("AWS_ALLOW_HTTP", "true")
+        .env("AWS_ALLOW_HTTP", allow_http)
         .env("AWS_ACCESS_KEY_ID", "AKIAHIDDEN")
         .env("AWS_SECRET_ACCESS_KEY", SECRET)
         .env("AWS_REGION", "us-east-1")
@@ -56,6 +60,17 @@ fn a_refusal_is_an_error_of_its_kind_without_the_text_of_the_server() {
 fn a_store_without_conditional_writes_says_what_to_do() {
     let body = "<Error><Code>NotImplemented</Code><Header>If-None-Match</Header></Error>";
     in_a_process("says_no_put_new", &server("501 Not Implemented", body));
+}
+
+#[test]
+fn an_endpoint_without_tls_is_refused_unless_it_is_allowed() {
+    with_http("says_no_tls", &server("200 OK", ""), "false");
+}
+
+#[test]
+fn a_store_that_is_not_there_may_work_later() {
+    let closed = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    in_a_process("says_no_connection", &format!("http://{closed}"));
 }
 
 #[test]
@@ -101,4 +116,18 @@ fn says_no_put_new() {
 fn check_says_no_put_new() {
     let error = Bucket::open("s3://bucket/a").unwrap().check_put_new().unwrap_err();
     assert!(matches!(error, CloudError::NoPutNew { .. }), "{error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_tls() {
+    let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
+    assert!(error.to_string().contains("has no TLS") && !error.is_lost(), "{error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_connection() {
+    let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
+    assert!(matches!(error, CloudError::Network { .. }) && error.is_lost(), "{error:?}");
 }

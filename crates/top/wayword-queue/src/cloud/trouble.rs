@@ -54,6 +54,10 @@ pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> 
     if matches!(error, E::PermissionDenied { .. }) || system(error) == Some(io::ErrorKind::PermissionDenied) {
         return CloudError::Permission { at, doing, answer };
     }
+    if text.contains("BadScheme") {
+        let hint = "give an https:// endpoint, or allow it with the provider's variable, such as AWS_ALLOW_HTTP=true";
+        return CloudError::Refused { at, doing, answer: "the endpoint has no TLS".to_owned(), hint };
+    }
     if let Some(problem) = network(error).or_else(|| busy(&text)) {
         return CloudError::Network { at, doing, problem: problem.to_owned() };
     }
