@@ -1,5 +1,5 @@
-//! What holds in every object store: in memory, in a folder, and in those that `WAYWORD_TEST_S3` and `WAYWORD_TEST_AZURE` name
-//! (`trials/scale/objects.sh` starts two simulators for them).
+//! What holds in every object store: in memory, in a folder, and in those that `WAYWORD_TEST_S3` and
+//! `WAYWORD_TEST_AZURE` name (`trials/scale/objects.sh` starts two simulators for them).
 
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]

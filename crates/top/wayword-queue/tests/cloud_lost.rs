@@ -1,4 +1,5 @@
-//! What a store that is not there, or refuses, looks like. A server of this test answers; the variables of the provider name it.
+//! What a store that is not there, or refuses, looks like. A server of this test answers; the variables of the
+//! provider name it.
 
 #![cfg(all(feature = "cloud", unix))]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]

@@ -97,7 +97,8 @@ fn folder(url: &Url, shown: String) -> Result<Opened, CloudError> {
     Ok(Opened { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
 }
 
-/// At most twelve more tries, within two and a half minutes. A store that is down for longer is left to whoever starts the worker again.
+/// At most twelve more tries, within two and a half minutes. A store that is down for longer is left to whoever
+/// starts the worker again.
 fn retry() -> RetryConfig {
     RetryConfig { max_retries: 12, retry_timeout: Duration::from_secs(150), ..RetryConfig::default() }
 }

@@ -136,8 +136,8 @@ impl Bucket {
         CloudError::NoPutNew { bucket: self.shown.clone(), problem }
     }
 
-    /// Finds out whether [`Bucket::put_new`] lets one writer win, by two writes of one object, which is removed again. A
-    /// store that ignores the condition takes both.
+    /// Finds out whether [`Bucket::put_new`] lets one writer win, by two writes of one object, which is removed
+    /// again. A store that ignores the condition takes both.
     ///
     /// # Errors
     /// [`CloudError::NoPutNew`], or when the store cannot be used.
@@ -203,8 +203,8 @@ impl Bucket {
     /// The objects below a prefix, in the order of their names. An empty prefix is all.
     ///
     /// # Errors
-    /// When the store cannot be used, or there are more than [`MOST_OBJECTS`]. A name that [`Bucket::get`] would refuse is
-    /// an error too: nothing is left out in silence.
+    /// When the store cannot be used, or there are more than [`MOST_OBJECTS`]. A name that [`Bucket::get`] would
+    /// refuse is an error too: nothing is left out in silence.
     pub fn list(&self, prefix: &str) -> Result<Vec<Entry>, CloudError> {
         if !prefix.is_empty() {
             names::check(prefix)?;

@@ -2,8 +2,8 @@
 
 use std::{io, path::PathBuf};
 
-/// An object store cannot be used. No text of a server and nothing of a credential is in it: what a server answers can repeat
-/// signatures and keys.
+/// An object store cannot be used. No text of a server and nothing of a credential is in it: what a server answers
+/// can repeat signatures and keys.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CloudError {

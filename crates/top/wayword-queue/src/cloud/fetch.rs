@@ -46,13 +46,15 @@ struct Fetching<'a> {
 }
 
 impl Bucket {
-    /// Fetches all objects below the prefix `name` (all of the bucket, if it is empty) into a folder, several at a time. A file that
-    /// was fetched before is kept, if its size and the object's version are the same ([`INDEX`] says so). Each file is whole or absent.
-    /// Files that are no longer in the store stay. Where several programs fetch into the same folder, one does and the others wait. `progress` gets the bytes that are there, and all bytes.
+    /// Fetches all objects below the prefix `name` (all of the bucket, if it is empty) into a folder, several at a
+    /// time. A file that was fetched before is kept, if its size and the object's version are the same ([`INDEX`]
+    /// says so). Each file is whole or absent. Files that are no longer in the store stay. Where several programs
+    /// fetch into the same folder, one does and the others wait. `progress` gets the bytes that are there, and all
+    /// bytes.
     ///
     /// # Errors
-    /// When there are more than `most_bytes`, a name leaves the folder, an object changes meanwhile, the store cannot be used,
-    /// or a file cannot be written. What has been fetched stays, and the same call continues.
+    /// When there are more than `most_bytes`, a name leaves the folder, an object changes meanwhile, the store cannot
+    /// be used, or a file cannot be written. What has been fetched stays, and the same call continues.
     pub fn fetch_folder(
         &self,
         name: &str,

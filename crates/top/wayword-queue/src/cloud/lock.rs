@@ -11,8 +11,8 @@ use std::{
 pub(super) struct Lock(Option<File>);
 
 impl Lock {
-    /// Waits until no other program fetches into the folder. Not all network file systems have locks: without one the fetch
-    /// goes on, under names of its own.
+    /// Waits until no other program fetches into the folder. Not all network file systems have locks: without one the
+    /// fetch goes on, under names of its own.
     pub(super) fn wait(folder: &Path) -> Result<Self, CloudError> {
         let path = folder.join(format!("{INDEX}.lock"));
         let file = File::options().create(true).truncate(false).write(true).open(&path);
@@ -20,8 +20,8 @@ impl Lock {
         Ok(Self(file.lock().is_ok().then_some(file)))
     }
 
-    /// What the names of unfinished files end in. Under the lock it is always the same, so that the next fetch replaces what a
-    /// killed one has left.
+    /// What the names of unfinished files end in. Under the lock it is always the same, so that the next fetch
+    /// replaces what a killed one has left.
     pub(super) fn ending(&self) -> String {
         if self.0.is_some() {
             return ".wayword-part".to_owned();

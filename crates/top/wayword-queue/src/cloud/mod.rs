@@ -13,16 +13,17 @@
 //! | Google | `GOOGLE_APPLICATION_CREDENTIALS`, `GOOGLE_SERVICE_ACCOUNT`; else the account of the machine |
 //! | Azure | `AZURE_STORAGE_ACCOUNT_NAME` with `AZURE_STORAGE_ACCOUNT_KEY` or `AZURE_STORAGE_SAS_TOKEN`; else the identity of the machine |
 //!
-//! The file `~/.aws/credentials` is not read. An endpoint without TLS needs the provider's own setting (`AWS_ALLOW_HTTP=true`).
+//! The file `~/.aws/credentials` is not read. An endpoint without TLS needs the provider's own setting
+//! (`AWS_ALLOW_HTTP=true`).
 //!
 //! # Who wins
-//! [`Bucket::put_new`] makes one of several writers win. It holds on Amazon S3 (since 2024), Google Cloud Storage, Azure and folders whose
-//! file system has hard links. A store that is compatible with S3 may refuse the condition, which is an error, or ignore it, which
-//! nobody sees: [`Bucket::check_put_new`] finds out.
+//! [`Bucket::put_new`] makes one of several writers win. It holds on Amazon S3 (since 2024), Google Cloud Storage,
+//! Azure and folders whose file system has hard links. A store that is compatible with S3 may refuse the condition,
+//! which is an error, or ignore it, which nobody sees: [`Bucket::check_put_new`] finds out.
 //!
 //! # What was tried
-//! The tests run on memory, on folders, and by `trials/scale/objects.sh` on two simulators, moto (S3) and Azurite (Azure). **Nothing was
-//! tried on Google Cloud Storage**, nor on the real services of Amazon and Microsoft.
+//! The tests run on memory, on folders, and by `trials/scale/objects.sh` on two simulators, moto (S3) and Azurite
+//! (Azure). **Nothing was tried on Google Cloud Storage**, nor on the real services of Amazon and Microsoft.
 
 mod address;
 mod bucket;

@@ -17,8 +17,8 @@ fn problem_of(name: &str) -> Option<&'static str> {
     if name.len() > LONGEST {
         return Some("is too long");
     }
-    // Two names that look alike, or a text that changes its direction, are no risk for files. Control characters are: they
-    // reach terminals.
+    // Two names that look alike, or a text that changes its direction, are no risk for files. Control characters are:
+    // they reach terminals.
     if name.chars().any(|c| c.is_control() || c == '\\') {
         return Some("has a control character or `\\`");
     }

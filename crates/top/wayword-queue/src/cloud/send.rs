@@ -37,11 +37,12 @@ struct Item {
 }
 
 impl Bucket {
-    /// Sends every plain file of a folder and of the folders in it, below the prefix `name`, several at a time. Links are
-    /// neither followed nor sent, nor is the list of what was fetched ([`INDEX`]). What is there under the same names is overwritten, so that the same call again does no harm; give
-    /// each attempt a prefix of its own.
+    /// Sends every plain file of a folder and of the folders in it, below the prefix `name`, several at a time. Links
+    /// are neither followed nor sent, nor is the list of what was fetched ([`INDEX`]). What is there under the same
+    /// names is overwritten, so that the same call again does no harm; give each attempt a prefix of its own.
     ///
-    /// A crash leaves some of the files there, each of them whole. Say by [`Bucket::put_new`] of another object that all are.
+    /// A crash leaves some of the files there, each of them whole. Say by [`Bucket::put_new`] of another object that
+    /// all are.
     ///
     /// # Errors
     /// When a file cannot be read, has a name that stores do not take, changes meanwhile, or the store cannot be used.
