@@ -14,6 +14,7 @@ mod done;
 mod error;
 mod folder;
 mod heartbeat;
+pub mod launch;
 mod plan;
 mod protocol;
 #[cfg(feature = "postgres")]
