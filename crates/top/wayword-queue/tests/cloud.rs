@@ -195,8 +195,9 @@ fn a_fetch_takes_only_what_is_missing_or_changed(place: &Place) {
     assert_eq!(fs::read(to.path().join("deep/er/b.bin")).unwrap().len(), 100_000);
     fs::write(to.path().join(INDEX), "broken").unwrap();
     assert_eq!(fetch().files, 3, "a broken index is no index");
+    fs::write(to.path().join("deep/b.bin.wayword-part"), "ha").unwrap();
     let sent = place.bucket.send_folder(to.path(), "again").unwrap();
-    assert_eq!(sent.files, 3, "the index is not sent");
+    assert_eq!(sent.files, 3, "neither the index nor an unfinished file is sent");
 }
 
 fn a_fetch_that_would_be_too_large_takes_nothing(place: &Place) {
@@ -276,7 +277,7 @@ fn an_empty_object_that_stands_for_a_folder_is_no_file(place: &Place) {
 fn a_hostile_name_in_the_store_is_not_fetched() {
     let place = folder().unwrap();
     let root = place.folder.as_ref().unwrap().path().join("new/folder/data");
-    for name in ["a\\..\\b", "a\nb", INDEX] {
+    for name in ["a\\..\\b", "a\nb", INDEX, "a.wayword-part"] {
         fs::create_dir_all(&root).unwrap();
         fs::write(root.join(name), "x").unwrap();
         let to = tempfile::tempdir().unwrap();
@@ -298,8 +299,10 @@ fn an_address_with_a_secret_is_refused_and_not_repeated() {
         "abfss://container:hunter2@account.dfs.core.windows.net/a",
         "s3://bucket/a#hunter2",
         "https://user:hunter2@example.org/a",
+        "s3://hunter2:443/bucket/a",
         "s3://bucket/../hunter2",
         "s3://[hunter2",
+        "s3://AKIAHIDDEN:hunter2/x@bucket/a",
     ];
     for url in secrets {
         let error = Bucket::open(url).unwrap_err();

@@ -75,6 +75,28 @@ fn a_store_that_is_not_there_may_work_later() {
 }
 
 #[test]
+fn nobody_has_won_while_the_store_says_that_writers_collide() {
+    let body = "<Error><Code>ConditionalRequestConflict</Code></Error>";
+    in_a_process("says_try_again", &server("409 Conflict", body));
+    let body = "<Error><Code>ContainerBeingDeleted</Code></Error>";
+    in_a_process("says_no_bucket_to_a_new_object", &server("409 Conflict", body));
+}
+
+#[test]
+fn a_hostile_name_in_an_answer_is_not_fetched() {
+    for key in ["a/data/../../x", "a/data//x", "a/data/a\\..\\x", "a/data/&#27;[2J", "a/data/.wayword-fetched.json"] {
+        let about = "<LastModified>2026-01-01T00:00:00.000Z</LastModified><ETag>1</ETag><Size>1</Size>";
+        let body = format!("<ListBucketResult><Contents><Key>{key}</Key>{about}</Contents></ListBucketResult>");
+        in_a_process("refuses_the_name", &server("200 OK", body.leak()));
+    }
+}
+
+#[test]
+fn a_variable_that_cannot_be_used_is_an_error_without_its_value() {
+    with_http("says_wrong_variable", "http://localhost", SECRET);
+}
+
+#[test]
 fn a_store_that_ignores_the_condition_is_found_out() {
     in_a_process("check_says_no_put_new", &server("200 OK\r\nETag: \"a\"", ""));
 }
@@ -131,4 +153,35 @@ fn says_no_tls() {
 fn says_no_connection() {
     let error = Bucket::open("s3://bucket/a").unwrap().put("b", "x").unwrap_err();
     assert!(matches!(error, CloudError::Network { .. }) && error.is_lost(), "{error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_try_again() {
+    let error = Bucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
+    assert!(error.is_lost(), "{error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_no_bucket_to_a_new_object() {
+    let error = Bucket::open("s3://bucket/a").unwrap().put_new("b", "x").unwrap_err();
+    assert!(matches!(error, CloudError::NoBucket { .. }), "{error:?}");
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn refuses_the_name() {
+    let here = tempfile::tempdir().unwrap();
+    let bucket = Bucket::open("s3://bucket/a").unwrap();
+    let error = bucket.fetch_folder("data", here.path(), 1 << 30, &|_, _| {}).unwrap_err();
+    assert!(matches!(error, CloudError::Name { .. }), "{error:?}");
+    assert_eq!(std::fs::read_dir(here.path()).unwrap().count(), 0);
+}
+
+#[test]
+#[ignore = "run by another test, with variables"]
+fn says_wrong_variable() {
+    let error = Bucket::open("s3://bucket/a").unwrap_err();
+    assert!(error.to_string().contains("variable of the provider"), "{error:?}");
 }

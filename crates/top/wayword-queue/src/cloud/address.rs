@@ -51,12 +51,12 @@ pub(super) fn open(text: &str) -> Result<Opened, CloudError> {
     let shown = url.as_str().trim_end_matches('/').escape_debug().to_string();
     let store: Arc<dyn ObjectStore> = match scheme {
         ObjectStoreScheme::Local => return folder(&url, shown),
-        ObjectStoreScheme::AmazonS3 => Arc::new(s3(&url).map_err(|error| trouble::of(&shown, "open it", &error))?),
+        ObjectStoreScheme::AmazonS3 => Arc::new(s3(&url).map_err(|error| trouble::of_settings(&shown, &error))?),
         ObjectStoreScheme::GoogleCloudStorage => {
-            Arc::new(google(&url).map_err(|error| trouble::of(&shown, "open it", &error))?)
+            Arc::new(google(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
         }
         ObjectStoreScheme::MicrosoftAzure => {
-            Arc::new(azure(&url).map_err(|error| trouble::of(&shown, "open it", &error))?)
+            Arc::new(azure(&url).map_err(|error| trouble::of_settings(&shown, &error))?)
         }
         _ => return Err(wrong("is of a server whose kind is not known", FORMS)),
     };
@@ -82,6 +82,11 @@ fn parsed(text: &str) -> Result<Url, CloudError> {
             "take it out, and set the variables of the provider, such as AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY";
         return Err(wrong("has a user or a password in it, which others could read", hint));
     }
+    // What a password was cut off from, or an endpoint, which stands in a variable.
+    if url.port().is_some() {
+        let hint = "take it out; the address of a server stands in a variable, such as AWS_ENDPOINT_URL";
+        return Err(wrong("has a port in it", hint));
+    }
     if url.query().is_some() || url.fragment().is_some() {
         let hint =
             "take out what follows `?` or `#`; a signature belongs in a variable, such as AZURE_STORAGE_SAS_TOKEN";
@@ -93,7 +98,7 @@ fn parsed(text: &str) -> Result<Url, CloudError> {
 fn folder(url: &Url, shown: String) -> Result<Opened, CloudError> {
     let path = url.to_file_path().map_err(|()| wrong("is no folder of this machine", FORMS))?;
     fs::create_dir_all(&path).map_err(CloudError::local(&path, "make this folder"))?;
-    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| trouble::of(&shown, "open it", &error))?;
+    let store = LocalFileSystem::new_with_prefix(&path).map_err(|error| trouble::of_settings(&shown, &error))?;
     Ok(Opened { store: Arc::new(store.with_fsync(true)), prefix: Path::default(), shown })
 }
 

@@ -5,7 +5,7 @@ use futures_util::{StreamExt, TryStreamExt};
 use object_store::{
     GetResult, ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload, memory::InMemory, path::Path,
 };
-use std::{fmt, sync::Arc};
+use std::{fmt, sync::Arc, time::Duration};
 use tokio::runtime::{Builder, Handle, Runtime};
 
 /// The most objects that are listed. A million names are about 200 MB.
@@ -13,6 +13,9 @@ pub const MOST_OBJECTS: usize = 1_000_000;
 
 /// How often a write is tried again when another one was at work on the same object.
 const CONFLICTS: u32 = 5;
+
+/// How long is waited before that, times the number of tries.
+const CONFLICT: Duration = Duration::from_millis(50);
 
 /// An object of a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,10 +58,12 @@ fn runtime() -> Result<Runtime, CloudError> {
 
 impl Bucket {
     /// Opens a bucket: `s3://BUCKET/PREFIX`, `gs://BUCKET/PREFIX`, `az://CONTAINER/PREFIX`, `file:///FOLDER`, and the
-    /// `https://` addresses of Amazon, Cloudflare R2 and Azure. Nothing is asked of the store yet.
+    /// `https://` addresses of Amazon, Cloudflare R2 and Azure. Nothing is asked of the store yet;
+    /// a folder is made if it is not there.
     ///
     /// # Errors
-    /// When the address cannot be read or holds a user, a password or a query; its text is not repeated.
+    /// When the address cannot be read or holds a user, a password, a port or a query; its text is not repeated. When a
+    /// variable of the provider cannot be used.
     pub fn open(url: &str) -> Result<Self, CloudError> {
         // The client needs a provider of cryptography. Where the program has chosen one, that one stays.
         let _ = rustls::crypto::ring::default_provider().install_default();
@@ -117,12 +122,17 @@ impl Bucket {
                 let options = PutOptions::from(PutMode::Create);
                 match self.store.put_opts(&place, payload.clone(), options).await {
                     Ok(_) => return Ok(true),
-                    Err(error) if trouble::is_conflict(&error) && conflicts < CONFLICTS => conflicts += 1,
+                    Err(error) if trouble::is_conflict(&error) && conflicts < CONFLICTS => {
+                        conflicts += 1;
+                        tokio::time::sleep(CONFLICT * conflicts).await;
+                    }
                     Err(error) if trouble::is_conflict(&error) => {
                         let problem = "others write the same object all the time".to_owned();
                         return Err(CloudError::Network { at: self.shown(name), doing: "write it", problem });
                     }
-                    Err(object_store::Error::AlreadyExists { .. }) => return Ok(false),
+                    Err(error @ object_store::Error::AlreadyExists { .. }) if !trouble::is_no_bucket(&error) => {
+                        return Ok(false);
+                    }
                     Err(error) if trouble::is_not_implemented(&error) => {
                         return Err(self.no_put_new("it says so"));
                     }

@@ -1,6 +1,6 @@
 //! Fetches what is below a prefix into a folder.
 
-use super::{Bucket, CloudError, Entry, bucket, index::Index, lock::Lock, names};
+use super::{Bucket, CloudError, Entry, bucket, index::Index, lock, lock::Lock, names};
 use futures_util::{StreamExt, stream};
 use object_store::{GetOptions, GetRange, ObjectStore};
 use std::{
@@ -174,6 +174,9 @@ fn below(prefix: &str, entries: Vec<Entry>) -> Result<Vec<Entry>, CloudError> {
         names::file_of(&entry.name)?;
         if entry.name.starts_with(INDEX) {
             return Err(names::wrong(&entry.name, "is kept for the list of what was fetched"));
+        }
+        if entry.name.ends_with(lock::UNFINISHED) {
+            return Err(names::wrong(&entry.name, "is kept for files that are not whole yet"));
         }
         inside.push(entry);
     }

@@ -7,6 +7,9 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
+/// What the name of an unfinished file ends in.
+pub(super) const UNFINISHED: &str = ".wayword-part";
+
 /// A lock of a folder, until it is dropped or the program ends.
 pub(super) struct Lock(Option<File>);
 
@@ -24,9 +27,9 @@ impl Lock {
     /// replaces what a killed one has left.
     pub(super) fn ending(&self) -> String {
         if self.0.is_some() {
-            return ".wayword-part".to_owned();
+            return UNFINISHED.to_owned();
         }
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-        format!(".{:x}-{since:x}.wayword-part", std::process::id())
+        format!(".{:x}-{since:x}{UNFINISHED}", std::process::id())
     }
 }

@@ -14,7 +14,8 @@
 //! | Azure | `AZURE_STORAGE_ACCOUNT_NAME` with `AZURE_STORAGE_ACCOUNT_KEY` or `AZURE_STORAGE_SAS_TOKEN`; else the identity of the machine |
 //!
 //! The file `~/.aws/credentials` is not read. An endpoint without TLS needs the provider's own setting
-//! (`AWS_ALLOW_HTTP=true`).
+//! (`AWS_ALLOW_HTTP=true`). Certificates are checked against the system's, or those of the file that `SSL_CERT_FILE`
+//! names.
 //!
 //! # Who wins
 //! [`Bucket::put_new`] makes one of several writers win. It holds on Amazon S3 (since 2024), Google Cloud Storage,

@@ -1,6 +1,6 @@
 //! Sends a folder.
 
-use super::{Bucket, CloudError, INDEX, names};
+use super::{Bucket, CloudError, INDEX, lock::UNFINISHED, names};
 use futures_util::{StreamExt, TryStreamExt, stream};
 use object_store::{ObjectStoreExt, PutPayload, WriteMultipart, path::Path as Place};
 use std::{
@@ -38,8 +38,8 @@ struct Item {
 
 impl Bucket {
     /// Sends every plain file of a folder and of the folders in it, below the prefix `name`, several at a time. Links
-    /// are neither followed nor sent, nor is the list of what was fetched ([`INDEX`]). What is there under the same
-    /// names is overwritten, so that the same call again does no harm; give each attempt a prefix of its own.
+    /// are neither followed nor sent, nor is the list of what was fetched ([`INDEX`]) and what a killed fetch has
+    /// left. What is there under the same names is overwritten, so that the same call again does no harm; give each attempt a prefix of its own.
     ///
     /// A crash leaves some of the files there, each of them whole. Say by [`Bucket::put_new`] of another object that
     /// all are.
@@ -119,6 +119,11 @@ fn is_at_end(mut file: &File, item: &Item) -> Result<(), CloudError> {
     }
 }
 
+/// Whether a file is there only because something was fetched into the folder, maybe by a program that was killed.
+fn is_of_fetch(name: &str, is_top: bool) -> bool {
+    name.ends_with(UNFINISHED) || (is_top && name.starts_with(INDEX))
+}
+
 /// The plain files below a folder, in the order of their names.
 fn files_of(local: &Path, name: &str) -> Result<Vec<Item>, CloudError> {
     let mut items = Vec::new();
@@ -136,7 +141,7 @@ fn files_of(local: &Path, name: &str) -> Result<Vec<Item>, CloudError> {
             if about.is_dir() {
                 names::check(&name)?;
                 folders.push((path, name));
-            } else if about.is_file() && !(folder == local && last.starts_with(INDEX)) {
+            } else if about.is_file() && !is_of_fetch(&last, folder == local) {
                 names::check(&name)?;
                 let bytes = inside.metadata().map_err(CloudError::local(&path, "read"))?.len();
                 items.push(Item { path, name, bytes });

@@ -58,6 +58,10 @@ pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> 
         let hint = "give an https:// endpoint, or allow it with the provider's variable, such as AWS_ALLOW_HTTP=true";
         return CloudError::Refused { at, doing, answer: "the endpoint has no TLS".to_owned(), hint };
     }
+    if text.contains("invalid peer certificate") || text.contains("InvalidCertificate") {
+        let hint = "check the endpoint; where an authority of your own signs, name the file of its certificate in SSL_CERT_FILE";
+        return CloudError::Refused { at, doing, answer: "the store's certificate is not valid here".to_owned(), hint };
+    }
     if let Some(problem) = network(error).or_else(|| busy(&text)) {
         return CloudError::Network { at, doing, problem: problem.to_owned() };
     }
@@ -66,6 +70,23 @@ pub(super) fn of(at: &str, doing: &'static str, error: &object_store::Error) -> 
         return CloudError::Refused { at, doing, answer: "the bucket is in another region".to_owned(), hint };
     }
     CloudError::Refused { at, doing, answer, hint: ASK }
+}
+
+/// The error of a store that could not be opened. That asks nothing of the network, so a setting is wrong.
+pub(super) fn of_settings(at: &str, error: &object_store::Error) -> CloudError {
+    let text = format!("{error} {error:?}");
+    if NO_CREDENTIALS.iter().any(|known| text.contains(known)) {
+        return CloudError::Credentials { at: at.to_owned(), answer: "none are set".to_owned() };
+    }
+    let (problem, hint) = if text.contains("CA certificates") {
+        let hint =
+            "install the system's certificates (package ca-certificates), or name a file of them in SSL_CERT_FILE";
+        ("this machine has no certificates of authorities", hint)
+    } else {
+        let hint = "check AWS_*, AZURE_* and GOOGLE_*: a flag is true or false, a key of Azure is base64, and the file of a service account must be there";
+        ("a variable of the provider has a value that cannot be used", hint)
+    };
+    CloudError::Refused { at: at.to_owned(), doing: "open it", answer: problem.to_owned(), hint }
 }
 
 /// Whether the store says that it has no conditional writes.
@@ -79,7 +100,14 @@ pub(super) fn is_not_implemented(error: &object_store::Error) -> bool {
 
 /// Whether another writer was at the same object at this moment, and nobody has won yet.
 pub(super) fn is_conflict(error: &object_store::Error) -> bool {
-    error.to_string().contains("ConditionalRequestConflict")
+    let text = error.to_string();
+    ["ConditionalRequestConflict", "OperationAborted"].iter().any(|code| text.contains(code))
+}
+
+/// Whether the bucket is not there. Azure says so of one that is being removed with the status of an object that exists.
+pub(super) fn is_no_bucket(error: &object_store::Error) -> bool {
+    let text = error.to_string();
+    NO_BUCKET.iter().any(|code| text.contains(code))
 }
 
 fn chain<'a>(error: &'a (dyn Error + 'static)) -> impl Iterator<Item = &'a (dyn Error + 'static)> {
