@@ -83,14 +83,16 @@ pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
     }
 }
 
+/// The version of the tables; 0 if there are none.
 fn version(connection: &mut Connection, tables: &Tables) -> Result<i32, postgres::Error> {
-    let table = format!("{}.version", tables.schema);
-    let is_there = connection.client().query_one("SELECT to_regclass($1) IS NOT NULL", &[&table])?;
+    // A name that is looked up by itself may be answered from what this connection remembers: that there are no tables.
+    let sql = "SELECT EXISTS (SELECT FROM pg_catalog.pg_tables WHERE schemaname = $1 AND tablename = 'version')";
+    let is_there = connection.client().query_one(sql, &[&tables.schema])?;
     if !is_there.try_get::<_, bool>(0)? {
         return Ok(0);
     }
-    let row = connection.client().query_one(&format!("SELECT coalesce(max(version), 0) FROM {table}"), &[])?;
-    row.try_get(0)
+    let sql = format!("SELECT coalesce(max(version), 0) FROM {}.version", tables.schema);
+    connection.client().query_one(&sql, &[])?.try_get(0)
 }
 
 /// Makes what is missing, in one transaction. Other programs wait for it.

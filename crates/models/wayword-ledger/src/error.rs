@@ -62,6 +62,22 @@ pub enum LedgerError {
         /// The system's error.
         source: Arc<std::io::Error>,
     },
+    /// The database on a server cannot be used.
+    #[error("{reason}")]
+    Database {
+        /// Which database, what was tried, and what to do.
+        reason: String,
+        /// Whether the server or the way to it failed.
+        is_lost: bool,
+    },
+    /// The database answers too slowly to keep a rate for all programs.
+    #[error(
+        "{place}: the database answers too slowly to keep one rate for all workers\nhint: use a database near the workers, or leave the provider's requests_per_minute and tokens_per_minute out"
+    )]
+    Slow {
+        /// The database.
+        place: Place,
+    },
     /// A line of a chunk's file cannot be read.
     #[error("{}: line {line}: {reason}\nhint: put a copy of the file in its place, or move it away: then its calls are made again", path.display())]
     Chunk {
@@ -104,11 +120,11 @@ impl LedgerError {
         }
     }
 
-    /// Whether the disk is full or fails. The answers so far are kept.
+    /// Whether the disk is full or fails, or the server is away. The answers so far are kept.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         match self {
-            Self::Store { is_lost, .. } => *is_lost,
+            Self::Store { is_lost, .. } | Self::Database { is_lost, .. } => *is_lost,
             Self::Io { source, .. } => matches!(source.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded),
             _ => false,
         }
@@ -117,6 +133,13 @@ impl LedgerError {
     pub(crate) fn io(place: impl Into<Place>, doing: &'static str) -> impl Fn(std::io::Error) -> Self {
         let place = place.into();
         move |source| Self::Io { place: place.clone(), doing, source: Arc::new(source) }
+    }
+}
+
+#[cfg(feature = "postgres")]
+impl From<wayword_database::DatabaseError> for LedgerError {
+    fn from(error: wayword_database::DatabaseError) -> Self {
+        Self::Database { reason: error.to_string(), is_lost: error.is_lost() }
     }
 }
 

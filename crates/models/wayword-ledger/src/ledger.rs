@@ -1,5 +1,7 @@
 //! A ledger: a file, or one in memory, or one that answers from a recording alone.
 
+#[cfg(feature = "postgres")]
+use crate::store::{Postgres, Pulse};
 use crate::{
     LedgerError, Spending,
     flight::Flights,
@@ -97,6 +99,31 @@ impl Ledger {
     /// When the file cannot be read, or was changed.
     pub fn spent_in(file: &Path) -> Result<Spending, LedgerError> {
         spent_in(file)
+    }
+
+    /// A ledger in a database, which programs on any number of machines share: each call is made once, the limits of a
+    /// run hold for all of them together, and so do rates ([`crate::Run::wait_turn`]). Makes the tables
+    /// ([`crate::TABLES`]) if it may and they are missing.
+    ///
+    /// # Errors
+    /// When the database cannot be used, or its tables are missing and this role may not make them.
+    #[cfg(feature = "postgres")]
+    pub fn postgres(database: &wayword_database::Database) -> Result<Self, LedgerError> {
+        Ok(Self::of(Postgres::open(database, Pulse::USUAL)?, None))
+    }
+
+    /// The same for tests, which do not wait a minute for a program that has ended.
+    ///
+    /// # Errors
+    /// As [`Ledger::postgres`].
+    #[cfg(feature = "postgres")]
+    #[doc(hidden)]
+    pub fn postgres_with_pulse(
+        database: &wayword_database::Database,
+        beat: std::time::Duration,
+        gone: std::time::Duration,
+    ) -> Result<Self, LedgerError> {
+        Ok(Self::of(Postgres::open(database, Pulse { beat, gone })?, None))
     }
 
     fn of(store: impl Store + 'static, recording: Option<PathBuf>) -> Self {

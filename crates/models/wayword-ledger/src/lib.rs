@@ -17,6 +17,7 @@ mod flight;
 mod ledger;
 mod place;
 mod queries;
+mod rate;
 mod recording;
 mod run;
 mod stopper;
@@ -29,5 +30,8 @@ pub use error::LedgerError;
 pub use ledger::Ledger;
 pub use place::Place;
 pub use queries::{By, CostLine, Filter, Spending};
+pub use rate::Rates;
 pub use run::{Attempts, OnceError, Run, Totals};
 pub use stopper::Stopper;
+#[cfg(feature = "postgres")]
+pub use store::TABLES;

@@ -186,6 +186,10 @@ impl Run {
         self.state.stopper.clone()
     }
 
+    pub(crate) fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
     /// What the run did and spent in this process.
     #[must_use]
     pub fn totals(&self) -> Totals {

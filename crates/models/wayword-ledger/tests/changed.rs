@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod common;
+
+use common::{Store, shared_stores};
 use rusqlite::Connection;
 use serde_json::json;
-use std::path::Path;
 use wayword_ledger::{Answer, Call, Filter, Ledger, LedgerError, Limits, OnceError, Refused, Run};
 
 fn call(number: usize) -> Call {
@@ -26,57 +28,54 @@ fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
     })
 }
 
-fn run(path: &Path) -> Run {
-    Ledger::open(path).unwrap().run("a", Limits::default()).unwrap()
+fn run(store: &Store) -> Run {
+    store.open().run("a", Limits::default()).unwrap()
 }
 
 #[test]
 fn a_changed_answer_is_told_and_never_used() {
-    for change in [
-        "answer = 'There is a sofa.'",
-        "answer = x'00'",
-        "finish = 'length'",
-        "tokens_in = -4",
-        "usd = 0.2",
-        "usd = NULL",
-        "latency_ms = 2",
-        "attempts = 2",
-        "checksum = 'none'",
-    ] {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("l.db");
-        (0..3).for_each(|number| drop(ask(&run(&path), number).unwrap()));
-        let key = call(1).key();
-        let sql = format!("UPDATE calls SET {change} WHERE key = '{key}'");
-        assert_eq!(Connection::open(&path).unwrap().execute(&sql, []).unwrap(), 1);
+    for store in shared_stores("a_changed_answer_is_told_and_never_used") {
+        let kind = store.kind();
+        let changes: &[&str] = match kind {
+            "sqlite" => &["answer = 'There is a sofa.'", "answer = x'00'", "usd = NULL"],
+            _ => &["answer = '\"There is a sofa.\"'", "answer = 'no JSON'", "usd = NULL", "attempts = -1"],
+        };
+        let for_all =
+            ["finish = 'length'", "tokens_in = -4", "usd = 0.2", "latency_ms = 2", "attempts = 2", "checksum = 'x'"];
+        for change in changes.iter().copied().chain(for_all) {
+            (0..3).for_each(|number| drop(ask(&run(&store), number).unwrap()));
+            let key = call(1).key();
+            assert_eq!(store.change(&format!("UPDATE calls SET {change} WHERE key = '{key}'")), 1);
 
-        let error = ask(&run(&path), 1).unwrap_err();
-        assert!(matches!(error, OnceError::Ledger(LedgerError::Changed { .. })), "{change}: {error}");
-        let told = error.to_string();
-        assert!(["l.db", key.as_str(), "t/m", "prune --changed"].iter().all(|part| told.contains(part)), "{told}");
-        let ledger = Ledger::open(&path).unwrap();
-        assert!(matches!(ledger.list(&Filter::default()), Err(LedgerError::Changed { .. })), "{change}");
-        assert!(matches!(ledger.export(&Filter::default(), Vec::new()), Err(LedgerError::Changed { .. })), "{change}");
-        assert!(ask(&run(&path), 2).is_ok(), "the others are as they were");
+            let error = ask(&run(&store), 1).unwrap_err();
+            assert!(matches!(error, OnceError::Ledger(LedgerError::Changed { .. })), "{kind} {change}: {error}");
+            let told = error.to_string();
+            let place = if kind == "sqlite" { "ledger.db" } else { "postgres@" };
+            assert!([place, key.as_str(), "t/m", "prune --changed"].iter().all(|part| told.contains(part)), "{told}");
+            let ledger = store.open();
+            assert!(matches!(ledger.list(&Filter::default()), Err(LedgerError::Changed { .. })), "{change}");
+            let exported = ledger.export(&Filter::default(), Vec::new());
+            assert!(matches!(exported, Err(LedgerError::Changed { .. })), "{change}");
+            assert!(ask(&run(&store), 2).is_ok(), "the others are as they were");
 
-        assert_eq!(ledger.prune_changed().unwrap(), 1, "{change}");
-        let again = run(&path);
-        assert_eq!(ask(&again, 1).unwrap().text, "There is a lamp.");
-        assert_eq!(again.totals().answered, 1, "it is asked anew");
-        assert_eq!(ledger.prune_changed().unwrap(), 0);
+            assert_eq!(ledger.prune_changed().unwrap(), 1, "{change}");
+            let again = run(&store);
+            assert_eq!(ask(&again, 1).unwrap().text, "There is a lamp.");
+            assert_eq!(again.totals().answered, 1, "it is asked anew");
+            assert_eq!(ledger.prune_changed().unwrap(), 0);
+        }
     }
 }
 
 #[test]
 fn an_answer_of_another_call_is_a_changed_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("l.db");
-    (0..2).for_each(|number| drop(ask(&run(&path), number).unwrap()));
-    let [first, second] = [0, 1].map(|number| call(number).key());
-    let connection = Connection::open(&path).unwrap();
-    connection.execute("DELETE FROM calls WHERE key = ?1", [first.as_str()]).unwrap();
-    connection.execute("UPDATE calls SET key = ?1 WHERE key = ?2", [first.as_str(), second.as_str()]).unwrap();
-    assert!(matches!(ask(&run(&path), 0), Err(OnceError::Ledger(LedgerError::Changed { .. }))));
+    for store in shared_stores("an_answer_of_another_call_is_a_changed_one") {
+        (0..2).for_each(|number| drop(ask(&run(&store), number).unwrap()));
+        let [first, second] = [0, 1].map(|number| call(number).key());
+        store.change(&format!("DELETE FROM calls WHERE key = '{first}'"));
+        store.change(&format!("UPDATE calls SET key = '{first}' WHERE key = '{second}'"));
+        assert!(matches!(ask(&run(&store), 0), Err(OnceError::Ledger(LedgerError::Changed { .. }))));
+    }
 }
 
 /// The tables of the first format, as its programs made them.
@@ -109,7 +108,7 @@ fn a_ledger_of_the_first_format_is_opened_and_its_answers_stay() {
         .unwrap();
     drop(old);
 
-    let opened = run(&path);
+    let opened = Ledger::open(&path).unwrap().run("a", Limits::default()).unwrap();
     assert_eq!(ask(&opened, 1).unwrap().text, "An old answer.");
     ask(&opened, 2).unwrap();
     drop(opened);

@@ -89,6 +89,7 @@ fn nothing_that_was_heard_is_lost_and_what_was_lost_is_counted() {
         for round in 1..=rounds {
             // The answers of earlier rounds come first, from the ledger.
             let said = killed_after(store.spec(), kept.len() + 20 * round);
+            store.settle();
             let ledger = store.open();
             let rows = ledger.list(&Filter::default()).unwrap();
             let (before, lost_before) = (kept, lost);

@@ -3,15 +3,22 @@
 //! Architecture invariant: what a store says it has written survives the end of the program, and a loss of power too.
 
 mod chunks;
+#[cfg(feature = "postgres")]
+mod postgres;
 mod sqlite;
 
 use crate::{
-    Answer, By, CostLine, Filter, Key, LedgerError, Limits, Place, Refused, Row, Spending, budget::Spent, run::Sent,
+    Answer, By, CostLine, Filter, Key, LedgerError, Limits, Place, Rates, Refused, Row, Spending, budget::Spent,
+    run::Sent,
 };
 use serde::{Deserialize, Serialize};
-use std::{fmt, path::Path};
+use std::{fmt, path::Path, time::Instant};
 
 pub(crate) use chunks::{Chunks, Entry, spent_in};
+#[cfg(feature = "postgres")]
+pub use postgres::TABLES;
+#[cfg(feature = "postgres")]
+pub(crate) use postgres::{Postgres, Pulse};
 pub(crate) use sqlite::{Sqlite, may_hold};
 
 /// Keeps calls, requests, and what runs have spent. Every function may be called by many threads at once.
@@ -54,6 +61,16 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     /// Whether the store itself keeps to the limits of runs: several programs make one run, or a run has several files.
     fn keeps_budget(&self) -> bool {
         false
+    }
+
+    /// Whether the store keeps rates for all programs together.
+    fn shares_rates(&self) -> bool {
+        false
+    }
+
+    /// Takes the next turn to send a request to a provider; `None` if there is no rate to keep.
+    fn turn(&self, _provider: &str, _rates: Rates, _tokens: u64) -> Result<Option<Slot>, LedgerError> {
+        Ok(None)
     }
 
     /// What a run has spent so far against its limits: what was paid, plus the upper bounds of requests that may have
@@ -131,6 +148,14 @@ pub(crate) struct Holder {
     pub(crate) sent: i64,
     /// Whether it has ended.
     pub(crate) is_gone: bool,
+}
+
+/// When a request may leave.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slot {
+    pub(crate) from: Instant,
+    /// If it leaves later, it could leave together with too many others.
+    pub(crate) until: Instant,
 }
 
 /// The result of a claim.

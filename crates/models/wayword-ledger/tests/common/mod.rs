@@ -2,6 +2,9 @@
 
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "no test uses all of it, and a test may panic")]
 
+#[cfg(feature = "postgres")]
+pub mod database;
+
 use std::path::Path;
 use tempfile::TempDir;
 use wayword_ledger::{Answer, Ledger};
@@ -10,7 +13,9 @@ use wayword_ledger::{Answer, Ledger};
 pub struct Store {
     /// What names the place, for another program.
     spec: String,
-    _folder: TempDir,
+    _folder: Option<TempDir>,
+    #[cfg(feature = "postgres")]
+    _server: Option<std::sync::Arc<wayword_testkit::Postgres>>,
 }
 
 impl Store {
@@ -22,6 +27,48 @@ impl Store {
     /// What [`open`] takes.
     pub fn spec(&self) -> &str {
         &self.spec
+    }
+
+    /// Waits until nothing is written any more for programs that were killed.
+    pub fn settle(&self) {
+        #[cfg(feature = "postgres")]
+        if self.kind() == "postgres" {
+            database::settle(self);
+        }
+    }
+
+    /// Changes the store past the ledger, in SQL, and returns how many rows were changed.
+    pub fn change(&self, sql: &str) -> usize {
+        match self.kind() {
+            "sqlite" => {
+                let path = self.spec.split_once(':').unwrap().1;
+                rusqlite::Connection::open(path).unwrap().execute(sql, []).unwrap()
+            }
+            #[cfg(feature = "postgres")]
+            "postgres" => {
+                let mut client = database::past(self);
+                client.batch_execute("SET search_path = wayword_ledger").unwrap();
+                usize::try_from(client.execute(sql, &[]).unwrap()).unwrap()
+            }
+            kind => unreachable!("{kind}"),
+        }
+    }
+
+    /// How many rows a table has.
+    pub fn count(&self, table: &str) -> i64 {
+        match self.kind() {
+            "sqlite" => {
+                let path = self.spec.split_once(':').unwrap().1;
+                let sql = format!("SELECT COUNT(*) FROM {table}");
+                rusqlite::Connection::open(path).unwrap().query_row(&sql, [], |row| row.get(0)).unwrap()
+            }
+            #[cfg(feature = "postgres")]
+            "postgres" => {
+                let sql = format!("SELECT count(*) FROM wayword_ledger.{table}");
+                database::past(self).query_one(&sql, &[]).unwrap().get(0)
+            }
+            kind => unreachable!("{kind}"),
+        }
     }
 
     /// The kind of the store.
@@ -44,9 +91,16 @@ pub fn shared_stores(test: &str) -> Vec<Store> {
     all
 }
 
-fn in_folder(kind: &str, file: &str) -> Store {
+/// A new place in a folder.
+pub fn in_folder(kind: &str, file: &str) -> Store {
     let folder = tempfile::tempdir().unwrap();
-    Store { spec: format!("{kind}:{}", folder.path().join(file).display()), _folder: folder }
+    let spec = format!("{kind}:{}", folder.path().join(file).display());
+    Store {
+        spec,
+        _folder: Some(folder),
+        #[cfg(feature = "postgres")]
+        _server: None,
+    }
 }
 
 /// The ledger at a place that [`Store::spec`] names.
@@ -59,11 +113,19 @@ pub fn open(spec: &str) -> Ledger {
             ledger.turn_to(Path::new(place)).unwrap();
             ledger
         }
+        #[cfg(feature = "postgres")]
+        "postgres" => database::open(place),
         _ => unreachable!("{spec}"),
     }
 }
 
-fn postgres(_: &str) -> Option<Store> {
+/// A new database, if the tests may start a server.
+pub fn postgres(test: &str) -> Option<Store> {
+    if std::env::var("WAYWORD_TEST_POSTGRES").is_ok_and(|set| set == "1") {
+        #[cfg(feature = "postgres")]
+        return database::new(test);
+    }
+    eprintln!("{test}: skipped for PostgreSQL: set WAYWORD_TEST_POSTGRES=1 and use --features postgres");
     None
 }
 

@@ -1,0 +1,72 @@
+//! Rates that all programs with the ledger open keep together.
+
+use crate::{LedgerError, Run};
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+/// How often a thread that waits looks whether it was stopped.
+const LOOK_UP: Duration = Duration::from_millis(100);
+
+/// How many turns in a row may be missed. Then the way to the database takes too long for a common rate.
+const MOST_MISSED: usize = 100;
+
+/// Rates of a provider that a user sets.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Rates {
+    /// Requests per second.
+    pub requests_per_s: Option<f64>,
+    /// Tokens per second, in and out.
+    pub tokens_per_s: Option<f64>,
+}
+
+impl Run {
+    /// Whether the ledger keeps rates for all programs together, see [`Run::wait_turn`].
+    #[must_use]
+    pub fn shares_rates(&self) -> bool {
+        self.ledger().store().shares_rates()
+    }
+
+    /// Waits until a request of about so many tokens may be sent to a provider, if the ledger keeps rates for all
+    /// programs together; otherwise returns at once. Returns false if `stopped` became true first.
+    ///
+    /// Requests leave in the order in which they asked. In any second at most the rate and a tenth of it leave, and at
+    /// least one more than the rate. A request that comes too late for its turn gives it up and takes another.
+    ///
+    /// # Errors
+    /// When the ledger cannot be used, or answers too slowly.
+    pub fn wait_turn(
+        &self,
+        provider: &str,
+        rates: Rates,
+        tokens: u64,
+        stopped: impl Fn() -> bool,
+    ) -> Result<bool, LedgerError> {
+        let store = self.ledger().store();
+        for _ in 0..MOST_MISSED {
+            if stopped() {
+                return Ok(false);
+            }
+            let Some(slot) = store.turn(provider, rates, tokens)? else { return Ok(true) };
+            if !wait(slot.from, &stopped) {
+                return Ok(false);
+            }
+            if Instant::now() <= slot.until {
+                return Ok(true);
+            }
+        }
+        Err(LedgerError::Slow { place: store.place() })
+    }
+}
+
+/// Waits for a moment; false if `stopped` became true first.
+fn wait(from: Instant, stopped: impl Fn() -> bool) -> bool {
+    loop {
+        match from.saturating_duration_since(Instant::now()) {
+            Duration::ZERO => return true,
+            _ if stopped() => return false,
+            left => thread::sleep(left.min(LOOK_UP)),
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! A program's way to the database: its connections, its name, and the writes that it owes.
+
+use super::amount;
+use crate::{
+    Key, LedgerError, Place,
+    store::{End, Request},
+};
+use std::{
+    hash::{BuildHasher, RandomState},
+    mem,
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicI64, Ordering},
+    },
+    time::{SystemTime, UNIX_EPOCH},
+};
+use wayword_database::{
+    Pool,
+    postgres::{self, error::SqlState},
+};
+
+/// Connections for everything but signs of life, which have one more.
+const CONNECTIONS: usize = 3;
+
+/// Rows of a run over which what came back is spread.
+const SLOTS: u64 = 16;
+
+/// Reserves the money of a request and writes the request down, if no limit is exceeded. The second time, it does
+/// nothing. What came back may have grown since the statement began, never shrunk: so no limit is exceeded.
+const RESERVE: &str = "
+WITH back AS (
+    SELECT coalesce(sum(released - spent), 0)::bigint AS usd, coalesce(sum(cancelled), 0)::bigint AS calls
+    FROM wayword_ledger.settled WHERE run = $3
+),
+moved AS (
+    UPDATE wayword_ledger.runs AS r SET reserved = r.reserved + coalesce($5::bigint, 0), calls = r.calls + 1
+    WHERE r.run = $3
+    AND ($7::bigint IS NULL OR r.reserved - (SELECT usd FROM back) + coalesce($5::bigint, 0) <= $7)
+    AND ($8::bigint IS NULL OR r.calls - (SELECT calls FROM back) < $8)
+    AND NOT EXISTS (SELECT FROM wayword_ledger.sent WHERE program = $1 AND number = $2)
+    RETURNING 1
+),
+written AS (
+    INSERT INTO wayword_ledger.sent (program, number, run, key, most, at)
+    SELECT $1, $2, $3, $4, $5, $6 FROM moved RETURNING 1
+)
+SELECT EXISTS (SELECT FROM written) OR EXISTS (SELECT FROM wayword_ledger.sent WHERE program = $1 AND number = $2),
+    EXISTS (SELECT FROM wayword_ledger.runs WHERE run = $3)";
+
+const NEW_RUN: &str = "INSERT INTO wayword_ledger.runs (run) VALUES ($1) ON CONFLICT DO NOTHING";
+
+/// Ends a request and gives its money back, as far as it was not lost. The second time, it does nothing.
+const END: &str = "
+WITH moved AS (
+    UPDATE wayword_ledger.sent SET outcome = $3, reason = $4
+    WHERE program = $1 AND number = $2 AND outcome IS NULL RETURNING run, coalesce(most, 0) AS most
+)
+INSERT INTO wayword_ledger.settled AS s (run, slot, released, spent, cancelled)
+SELECT run, $5, most, CASE $3 WHEN 'lost' THEN most ELSE 0 END, CASE $3 WHEN 'cancelled' THEN 1 ELSE 0 END FROM moved
+ON CONFLICT (run, slot) DO UPDATE SET released = s.released + EXCLUDED.released, spent = s.spent + EXCLUDED.spent,
+    cancelled = s.cancelled + EXCLUDED.cancelled";
+
+const RELEASE: &str = "DELETE FROM wayword_ledger.claims WHERE key = $1 AND holder = $2";
+
+/// A program's way to the database.
+#[derive(Debug)]
+pub(super) struct Link {
+    pub(super) pool: Pool,
+    /// The unique name of this program.
+    pub(super) program: String,
+    /// Which of a run's rows of `settled` this program changes.
+    pub(super) slot: i16,
+    /// The number of the next request.
+    next: AtomicI64,
+    owed: Mutex<Vec<Owed>>,
+}
+
+/// A write that could not be made, and will be made later.
+#[derive(Debug)]
+enum Owed {
+    End { number: i64, end: End, reason: String },
+    Release(Key),
+}
+
+/// The result of [`Link::reserve`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reserved {
+    Yes,
+    /// A limit would be exceeded.
+    No,
+    /// The request was changed by another statement at the same time, or its run is new.
+    Again,
+}
+
+impl Link {
+    pub(super) fn new(database: wayword_database::Database) -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros();
+        // Programs on many machines need different names, so the clock is not enough.
+        let random = RandomState::new().hash_one((since, std::process::id()));
+        Self {
+            pool: Pool::new(database, CONNECTIONS),
+            program: format!("{:x}-{since:x}-{random:x}", std::process::id()),
+            slot: i16::try_from(random % SLOTS).unwrap_or(0),
+            next: AtomicI64::new(0),
+            owed: Mutex::default(),
+        }
+    }
+
+    pub(super) fn place(&self) -> Place {
+        Place::Database(self.pool.database().shown().to_owned())
+    }
+
+    /// A number for a request.
+    pub(super) fn number(&self) -> i64 {
+        self.next.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// Carries out a statement.
+    pub(super) fn rows(
+        &self,
+        doing: &'static str,
+        sql: &'static str,
+        values: &[&(dyn postgres::types::ToSql + Sync)],
+    ) -> Result<Vec<postgres::Row>, LedgerError> {
+        Ok(self.pool.with(doing, |connection| connection.rows(sql, values))?)
+    }
+
+    /// Carries out a statement with one row, and reads it.
+    pub(super) fn row<T>(
+        &self,
+        doing: &'static str,
+        sql: &'static str,
+        values: &[&(dyn postgres::types::ToSql + Sync)],
+        read: impl Fn(&postgres::Row) -> Result<T, postgres::Error>,
+    ) -> Result<Option<T>, LedgerError> {
+        Ok(self.pool.with(doing, |connection| connection.rows(sql, values)?.first().map(&read).transpose())?)
+    }
+
+    /// Reserves the money of a request and writes it down.
+    pub(super) fn reserve(&self, number: i64, request: &Request<'_>) -> Result<Reserved, LedgerError> {
+        let Request { run, key, most_usd, at_unix_s, limits } = request;
+        let (most, key) = (most_usd.map(amount::up), key.as_str());
+        let max_usd = limits.max_usd.map(amount::limit);
+        let max_calls = limits.max_calls.map(super::rows::count);
+        let done = self.pool.with("write a request down", |connection| {
+            let values: [&(dyn postgres::types::ToSql + Sync); 8] =
+                [&self.program, &number, run, &key, &most, at_unix_s, &max_usd, &max_calls];
+            match connection.rows(RESERVE, &values) {
+                Ok(rows) => rows.first().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).transpose(),
+                // The same statement was sent before the connection was lost, and is carried out at this moment.
+                Err(error) if error.code() == Some(&SqlState::UNIQUE_VIOLATION) => Ok(None),
+                Err(error) => Err(error),
+            }
+        })?;
+        match done {
+            Some((true, _)) => Ok(Reserved::Yes),
+            Some((false, true)) => Ok(Reserved::No),
+            Some((false, false)) => {
+                self.rows("begin a run", NEW_RUN, &[run])?;
+                Ok(Reserved::Again)
+            }
+            None => Ok(Reserved::Again),
+        }
+    }
+
+    /// Ends a request, now or later.
+    pub(super) fn end(&self, number: i64, end: End, reason: &str) {
+        self.owe(Owed::End { number, end, reason: super::rows::text(reason) });
+    }
+
+    /// Gives the right to make a call back, now or later.
+    pub(super) fn release(&self, key: &Key) {
+        self.owe(Owed::Release(key.clone()));
+    }
+
+    fn owe(&self, owed: Owed) {
+        if self.pay(&owed).is_err() {
+            self.owed.lock().unwrap_or_else(PoisonError::into_inner).push(owed);
+        }
+    }
+
+    fn pay(&self, owed: &Owed) -> Result<(), LedgerError> {
+        match owed {
+            Owed::End { number, end, reason } => {
+                let values: [&(dyn postgres::types::ToSql + Sync); 5] =
+                    [&self.program, number, &end.name(), reason, &self.slot];
+                self.rows("write down how a request ended", END, &values).map(drop)
+            }
+            Owed::Release(key) => self.rows("release a call", RELEASE, &[&key.as_str(), &self.program]).map(drop),
+        }
+    }
+
+    /// Makes the writes that could not be made before.
+    pub(super) fn catch_up(&self) -> Result<(), LedgerError> {
+        let owed = mem::take(&mut *self.owed.lock().unwrap_or_else(PoisonError::into_inner));
+        let mut failed = Ok(());
+        for one in owed {
+            // After a failure the others would fail too, each after a long time.
+            failed = failed.and_then(|()| self.pay(&one));
+            if failed.is_err() {
+                self.owed.lock().unwrap_or_else(PoisonError::into_inner).push(one);
+            }
+        }
+        failed
+    }
+}

@@ -1,0 +1,266 @@
+//! A database on a server, which many programs on many machines share.
+//!
+//! Every change is one statement that does nothing the second time, because it is sent again after a lost connection. A
+//! statement that changes several tables changes them in this order, so that none waits for another in a circle: `runs`,
+//! `sent`, `calls`, `uses`, `claims`, `settled`.
+
+mod amount;
+mod link;
+mod presence;
+mod queries;
+mod rates;
+mod rows;
+mod tables;
+
+use super::{Claimed, End, Holder, Order, Request, Slot, Store};
+use crate::{
+    Answer, By, CostLine, Filter, Key, LedgerError, Place, Rates, Refused, Row, Spending,
+    budget::{Spent, fits},
+    checksum,
+    run::Sent,
+};
+use link::{Link, Reserved};
+use presence::Presence;
+use rows::{columns, count, sound, text};
+use std::sync::{Arc, OnceLock};
+use wayword_database::{Database, postgres::types::ToSql, prepare};
+
+pub(crate) use presence::Pulse;
+pub use tables::TABLES;
+
+/// How often a request is tried again that fits by what the ledger says, and was refused all the same.
+const TRIES: usize = 20;
+
+/// The answer of a call. Notes that a run has used it; the second time, nothing is written.
+const ANSWER: &str = concat!(
+    "WITH used AS (
+        INSERT INTO wayword_ledger.uses (run, key)
+        SELECT $2, key FROM wayword_ledger.calls WHERE key = $1
+        AND NOT EXISTS (SELECT FROM wayword_ledger.uses WHERE run = $2 AND key = $1) ON CONFLICT DO NOTHING
+    )
+    SELECT ",
+    columns!(),
+    " FROM wayword_ledger.calls WHERE key = $1"
+);
+
+const CLAIM: &str = "
+WITH given AS (
+    INSERT INTO wayword_ledger.claims AS c (key, holder)
+    SELECT $1, $2 WHERE NOT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)
+    ON CONFLICT (key) DO UPDATE SET holder = $2 WHERE c.holder = $2 OR c.holder = $3 RETURNING 1
+)
+SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1), EXISTS (SELECT FROM given)";
+
+const IS_ANSWERED: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)";
+
+const HOLDER: &str = "
+SELECT holder, (SELECT count(*) FROM wayword_ledger.sent AS s WHERE s.key = c.key AND s.program = c.holder),
+    NOT EXISTS (
+        SELECT FROM wayword_ledger.presence AS p
+        WHERE p.program = c.holder AND p.beat > clock_timestamp() - make_interval(secs => $2)
+    )
+FROM wayword_ledger.claims AS c WHERE key = $1";
+
+/// Stores an answer if it is the first, ends its request, gives back what it did not cost, and releases the call. The
+/// numbers of rows that do not matter make one part wait for the other.
+const ANSWERED: &str = "
+WITH moved AS (
+    UPDATE wayword_ledger.sent SET outcome = 'answered', usd = $10
+    WHERE program = $16 AND number = $17 AND outcome IS NULL RETURNING run, coalesce(most, 0) AS most
+),
+kept AS (
+    INSERT INTO wayword_ledger.calls
+    SELECT $1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15 WHERE (SELECT count(*) FROM moved) >= 0
+    ON CONFLICT (key) DO NOTHING RETURNING 1
+),
+used AS (
+    INSERT INTO wayword_ledger.uses (run, key) SELECT $14, $1 WHERE (SELECT count(*) FROM kept) >= 0
+    ON CONFLICT DO NOTHING RETURNING 1
+),
+freed AS (
+    DELETE FROM wayword_ledger.claims WHERE key = $1 AND holder = $16 AND (SELECT count(*) FROM used) >= 0 RETURNING 1
+),
+paid AS (
+    INSERT INTO wayword_ledger.settled AS s (run, slot, released, spent, cancelled)
+    SELECT run, $18, most, coalesce($19::bigint, most), 0 FROM moved WHERE (SELECT count(*) FROM freed) >= 0
+    ON CONFLICT (run, slot) DO UPDATE SET released = s.released + EXCLUDED.released, spent = s.spent + EXCLUDED.spent
+)
+SELECT EXISTS (SELECT FROM kept)";
+
+/// A ledger in a database.
+#[derive(Debug)]
+pub(crate) struct Postgres {
+    link: Arc<Link>,
+    pulse: Pulse,
+    /// Shows other programs that this one is running, from its first claim on.
+    presence: OnceLock<Result<Presence, LedgerError>>,
+}
+
+impl Postgres {
+    pub(crate) fn open(database: &Database, pulse: Pulse) -> Result<Self, LedgerError> {
+        let link = Link::new(database.clone());
+        prepare(&link.pool, &TABLES)?;
+        Ok(Self { link: Arc::new(link), pulse, presence: OnceLock::new() })
+    }
+
+    /// Shows other programs that this one is running.
+    fn appear(&self) -> Result<(), LedgerError> {
+        match self.presence.get_or_init(|| Presence::new(&self.link, self.pulse)) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(error.clone()),
+        }
+    }
+}
+
+impl Store for Postgres {
+    fn place(&self) -> Place {
+        self.link.place()
+    }
+
+    fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError> {
+        let rows = self.link.rows("look for an answer", ANSWER, &[&key.as_str(), &run])?;
+        rows.first().map(|row| sound(row, &self.place()).map(|kept| kept.answer)).transpose()
+    }
+
+    fn claim(&self, key: &Key, from: Option<&str>) -> Result<Claimed, LedgerError> {
+        self.appear()?;
+        let values: [&(dyn ToSql + Sync); 3] = [&key.as_str(), &self.link.program, &from];
+        let read = |row: &wayword_database::postgres::Row| Ok((row.try_get(0)?, row.try_get(1)?));
+        match self.link.row("claim a call", CLAIM, &values, read)?.unwrap_or_default() {
+            (true, _) => return Ok(Claimed::Answered),
+            (false, false) => return Ok(Claimed::Others),
+            (false, true) => {}
+        }
+        // The statement may have waited for the one that stored the answer, and did not see it.
+        let is_answered = self.link.row("claim a call", IS_ANSWERED, &[&key.as_str()], |row| row.try_get(0))?;
+        if is_answered == Some(true) {
+            self.release(key);
+            return Ok(Claimed::Answered);
+        }
+        Ok(Claimed::Ours)
+    }
+
+    fn release(&self, key: &Key) {
+        self.link.release(key);
+    }
+
+    fn holder(&self, key: &Key) -> Result<Option<Holder>, LedgerError> {
+        let gone_s = self.pulse.gone.as_secs_f64();
+        self.link.row("look who makes a call", HOLDER, &[&key.as_str(), &gone_s], |row| {
+            Ok(Holder { name: row.try_get(0)?, sent: row.try_get(1)?, is_gone: row.try_get(2)? })
+        })
+    }
+
+    fn sent(&self, request: &Request<'_>) -> Result<i64, Refused> {
+        self.appear()?;
+        let Request { limits, most_usd, .. } = *request;
+        if limits.max_usd.is_some() && most_usd.is_none() {
+            return Err(Refused::NoPrice);
+        }
+        let number = self.link.number();
+        for _ in 0..TRIES {
+            match self.link.reserve(number, request)? {
+                Reserved::Yes => return Ok(number),
+                // If another request has ended meanwhile, this one may fit after all.
+                Reserved::No => fits(limits, self.spent_by(request.run)?, most_usd)?,
+                Reserved::Again => {}
+            }
+        }
+        let spent = self.spent_by(request.run)?;
+        Err(match (limits.max_usd, limits.max_calls) {
+            (None, Some(max_calls)) => Refused::MaxCalls { max_calls },
+            (max_usd, _) => Refused::MaxUsd {
+                max_usd: max_usd.unwrap_or(f64::INFINITY),
+                spent_usd: spent.usd + spent.reserved_usd,
+                next_usd: most_usd.unwrap_or(0.0),
+            },
+        })
+    }
+
+    fn ended(&self, sent: &Sent, end: End, reason: &str) {
+        self.link.end(sent.number, end, reason);
+    }
+
+    fn answered(&self, sent: Option<&Sent>, row: Row) -> Result<bool, LedgerError> {
+        let (call, answer) = (&row.call, &row.answer);
+        let counts = [answer.tokens_in, answer.tokens_out, answer.latency_ms].map(count);
+        let [tokens_in, tokens_out, latency_ms] = &counts;
+        let request = call.request.to_string();
+        let answer_json = serde_json::Value::from(answer.text.as_str()).to_string();
+        let values: [&(dyn ToSql + Sync); 19] = [
+            &row.key.as_str(),
+            &call.model,
+            &call.base_url,
+            &request,
+            &i64::from(call.replicate),
+            &answer_json,
+            &text(&answer.finish),
+            tokens_in,
+            tokens_out,
+            &answer.usd,
+            latency_ms,
+            &i64::from(answer.attempts),
+            &row.at_unix_s,
+            &row.run,
+            &checksum::of(&row.key, answer),
+            &self.link.program,
+            &sent.map(|sent| sent.number),
+            &self.link.slot,
+            &answer.usd.map(amount::up),
+        ];
+        Ok(self.link.row("store an answer", ANSWERED, &values, |row| row.try_get(0))?.unwrap_or(false))
+    }
+
+    fn flush(&self) -> Result<(), LedgerError> {
+        self.link.catch_up()
+    }
+
+    fn keeps_budget(&self) -> bool {
+        true
+    }
+
+    fn shares_rates(&self) -> bool {
+        true
+    }
+
+    fn turn(&self, provider: &str, rates: Rates, tokens: u64) -> Result<Option<Slot>, LedgerError> {
+        rates::turn(&self.link, provider, rates, tokens)
+    }
+
+    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
+        self.spent_by(run)
+    }
+
+    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
+        self.spending_of(run)
+    }
+
+    fn each(
+        &self,
+        filter: &Filter,
+        order: Order,
+        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
+    ) -> Result<(), LedgerError> {
+        self.each_row(filter, order, take)
+    }
+
+    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
+        self.drop_calls(filter)
+    }
+
+    fn prune_changed(&self) -> Result<usize, LedgerError> {
+        self.drop_changed()
+    }
+
+    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+        self.has_answers(model, base_url)
+    }
+
+    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
+        self.cost_lines(by)
+    }
+
+    fn lost(&self) -> Result<u64, LedgerError> {
+        self.lost_requests()
+    }
+}

@@ -1,0 +1,88 @@
+//! Signs of life of the programs that use a ledger. A program without one for a minute, by the database's clock, has
+//! ended, or cannot reach the database: its calls are free for others.
+
+use super::link::Link;
+use crate::LedgerError;
+use std::{
+    sync::{Arc, mpsc},
+    thread,
+    time::Duration,
+};
+use wayword_database::Pool;
+
+/// How often a program gives a sign of life, and after what time without one it has ended.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pulse {
+    pub(crate) beat: Duration,
+    pub(crate) gone: Duration,
+}
+
+impl Pulse {
+    pub(crate) const USUAL: Self = Self { beat: Duration::from_secs(10), gone: Duration::from_secs(60) };
+}
+
+/// A sign of life need not survive a crash of the server.
+const BEAT: &str = "
+INSERT INTO wayword_ledger.presence (program, beat)
+SELECT $1, clock_timestamp() WHERE set_config('synchronous_commit', 'off', true) = 'off'
+ON CONFLICT (program) DO UPDATE SET beat = clock_timestamp()";
+
+/// Removes what ended programs have left behind.
+const SWEEP: &str = "
+WITH old AS (
+    SELECT program FROM wayword_ledger.presence WHERE beat < clock_timestamp() - make_interval(secs => $1)
+    FOR UPDATE SKIP LOCKED
+),
+gone AS (DELETE FROM wayword_ledger.presence AS p USING old WHERE p.program = old.program RETURNING p.program)
+DELETE FROM wayword_ledger.claims USING gone WHERE claims.holder = gone.program";
+
+const LEAVE: &str = "
+WITH gone AS (DELETE FROM wayword_ledger.presence WHERE program = $1)
+DELETE FROM wayword_ledger.claims WHERE holder = $1";
+
+/// Shows other programs that this one is running, until it is dropped.
+#[derive(Debug)]
+pub(super) struct Presence {
+    link: Arc<Link>,
+    /// The thread ends when this is dropped.
+    _stop: mpsc::Sender<()>,
+}
+
+impl Presence {
+    /// Gives the first sign of life, and goes on in a thread with a connection of its own.
+    pub(super) fn new(link: &Arc<Link>, pulse: Pulse) -> Result<Self, LedgerError> {
+        let pool = Pool::new(link.pool.database().clone(), 1);
+        beat(&pool, &link.program)?;
+        let gone_s = pulse.gone.as_secs_f64();
+        pool.with("remove what ended programs left behind", |connection| connection.rows(SWEEP, &[&gone_s]))?;
+        let (stop, stopped) = mpsc::channel();
+        let of = Arc::clone(link);
+        thread::Builder::new()
+            .name("ledger's signs of life".to_owned())
+            .spawn(move || go_on(&pool, &of, pulse.beat, &stopped))
+            .map_err(LedgerError::io(link.place(), "start the ledger's thread"))?;
+        Ok(Self { link: Arc::clone(link), _stop: stop })
+    }
+}
+
+fn go_on(pool: &Pool, link: &Link, pause: Duration, stopped: &mpsc::Receiver<()>) {
+    while let Err(mpsc::RecvTimeoutError::Timeout) = stopped.recv_timeout(pause) {
+        // If this fails for a while, others take this program's calls over, and the first answer stands.
+        if beat(pool, &link.program).is_ok() {
+            let _ = link.catch_up();
+        }
+    }
+}
+
+fn beat(pool: &Pool, program: &str) -> Result<(), LedgerError> {
+    Ok(pool.with("give a sign of life", |connection| connection.rows(BEAT, &[&program]).map(drop))?)
+}
+
+impl Drop for Presence {
+    fn drop(&mut self) {
+        // One try alone, because a program that ends does not wait for a server that is away: others notice it later.
+        if let Ok(mut client) = self.link.pool.database().connect() {
+            let _ = client.execute(LEAVE, &[&self.link.program]);
+        }
+    }
+}

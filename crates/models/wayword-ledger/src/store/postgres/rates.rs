@@ -1,0 +1,95 @@
+//! One rate for each provider, for all programs together.
+//!
+//! For each provider the database keeps when the next request is due. A request takes that time as its own, and moves it
+//! on: so requests leave in the order in which they asked, and a program that asks more often gets no more than the
+//! others.
+
+use super::link::Link;
+use crate::{LedgerError, Rates, store::Slot};
+use std::time::{Duration, Instant};
+
+/// How much may be sent above the rate in any second, in seconds of the rate.
+const BURST_S: f64 = 0.1;
+
+/// Fewest requests that may be sent above the rate.
+const LEAST_BURST: f64 = 1.0;
+
+/// When the next request is due need not survive a crash of the server, which takes longer than a burst.
+const TURN: &str = "
+UPDATE wayword_ledger.rates
+SET requests = greatest(requests, clock_timestamp()) + make_interval(secs => $2),
+    tokens = greatest(tokens, clock_timestamp()) + make_interval(secs => $3)
+WHERE provider = $1 AND set_config('synchronous_commit', 'off', true) = 'off'
+RETURNING extract(epoch FROM greatest(
+    requests - make_interval(secs => $2) - make_interval(secs => $4),
+    tokens - make_interval(secs => $3) - make_interval(secs => $5)
+) - clock_timestamp())::float8";
+
+const NEW: &str = "
+INSERT INTO wayword_ledger.rates (provider, requests, tokens) VALUES ($1, clock_timestamp(), clock_timestamp())
+ON CONFLICT DO NOTHING";
+
+/// What a request means for one rate, seconds.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Share {
+    /// For how long no other request is due.
+    takes_s: f64,
+    /// How much earlier than due it may leave. This is half of the burst.
+    early_s: f64,
+    /// How much later than due it may leave. This is the other half.
+    late_s: f64,
+}
+
+impl Share {
+    /// `most` is the least burst, in the unit of the rate.
+    fn of(per_s: Option<f64>, amount: f64, least: f64) -> Option<Self> {
+        let per_s = per_s.filter(|per_s| per_s.is_finite() && *per_s > 0.0)?;
+        let half = (per_s * BURST_S).max(least) / 2.0;
+        // The request itself counts in every second.
+        let early_s = (half - least).max(0.0) / per_s;
+        Some(Self { takes_s: amount / per_s, early_s, late_s: half / per_s })
+    }
+}
+
+/// Takes the next time at which a request is due.
+pub(super) fn turn(link: &Link, provider: &str, rates: Rates, tokens: u64) -> Result<Option<Slot>, LedgerError> {
+    let requests = Share::of(rates.requests_per_s, 1.0, LEAST_BURST);
+    let tokens = Share::of(rates.tokens_per_s, tokens as f64, 0.0);
+    let Some(late_s) = requests.iter().chain(&tokens).map(|share| share.late_s).reduce(f64::min) else {
+        return Ok(None);
+    };
+    let (requests, tokens) = (requests.unwrap_or_default(), tokens.unwrap_or_default());
+    let late = Duration::try_from_secs_f64(late_s).unwrap_or_default();
+    loop {
+        let taken = link.pool.with("take a turn", |connection| {
+            let asked = Instant::now();
+            let rows = connection
+                .rows(TURN, &[&provider, &requests.takes_s, &tokens.takes_s, &requests.early_s, &tokens.early_s])?;
+            let heard = Instant::now();
+            rows.first().map(|row| row.try_get::<_, f64>(0).map(|wait_s| (asked, heard, wait_s))).transpose()
+        })?;
+        let Some((asked, heard, wait_s)) = taken else {
+            link.rows("begin a rate", NEW, &[&provider])?;
+            continue;
+        };
+        let wait = Duration::try_from_secs_f64(wait_s.max(0.0)).unwrap_or(Duration::MAX);
+        // The database looked at its clock between the question and the answer.
+        let (from, until) = (heard.checked_add(wait), asked.checked_add(wait).and_then(|due| due.checked_add(late)));
+        return Ok(from.zip(until).map(|(from, until)| Slot { from, until }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn in_no_second_more_than_the_rate_and_a_burst_leave() {
+        for per_s in [0.5, 1.0, 7.0, 20.0, 60.0, 200.0, 3000.0] {
+            let share = Share::of(Some(per_s), 1.0, LEAST_BURST).unwrap();
+            let most = (per_s * (1.0 + share.early_s + share.late_s) + 1.0).floor();
+            assert!(most <= (per_s + (per_s * BURST_S).max(LEAST_BURST)).floor(), "{per_s}: {most}");
+        }
+        assert_eq!([None, Some(0.0), Some(f64::NAN)].map(|per_s| Share::of(per_s, 1.0, 1.0)), [None; 3]);
+    }
+}

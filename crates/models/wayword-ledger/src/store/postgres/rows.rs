@@ -1,0 +1,68 @@
+//! Rows of `calls`.
+
+use crate::{Answer, Call, Key, LedgerError, Place, Row, checksum};
+use wayword_database::postgres;
+
+/// The columns of a row of `calls`, in the order in which [`sound`] takes them.
+macro_rules! columns {
+    () => {
+        "calls.key, model, base_url, request, replicate, answer, finish, tokens_in, tokens_out, usd, latency_ms, \
+         attempts, at, calls.run, checksum"
+    };
+}
+pub(super) use columns;
+
+/// Reads a row with `columns`, and checks it.
+///
+/// # Errors
+/// When the row is not as it was written.
+pub(super) fn sound(row: &postgres::Row, place: &Place) -> Result<Row, LedgerError> {
+    let text = |at: usize| row.try_get::<_, String>(at);
+    let changed = || LedgerError::Changed {
+        place: place.clone(),
+        key: text(0).unwrap_or_else(|_| "of an unknown name".to_owned()),
+        model: text(1).unwrap_or_else(|_| "an unknown model".to_owned()),
+    };
+    let (kept, checksum) = read(row).ok_or_else(changed)?;
+    if checksum == checksum::of(&kept.key, &kept.answer) { Ok(kept) } else { Err(changed()) }
+}
+
+/// A row and its checksum; `None` if a column has a value that this program never writes.
+fn read(row: &postgres::Row) -> Option<(Row, String)> {
+    let text = |at: usize| row.try_get::<_, String>(at).ok();
+    let whole = |at: usize| row.try_get::<_, i64>(at).ok();
+    let count = |at: usize| whole(at).and_then(|count| u64::try_from(count).ok());
+    let small = |at: usize| whole(at).and_then(|count| u32::try_from(count).ok());
+    let request = text(3)?;
+    let kept = Row {
+        key: Key::stored(text(0)?),
+        call: Call {
+            model: text(1)?,
+            base_url: text(2)?,
+            request: serde_json::from_str(&request).unwrap_or(serde_json::Value::String(request)),
+            replicate: small(4)?,
+        },
+        answer: Answer {
+            text: serde_json::from_str(&text(5)?).ok()?,
+            finish: text(6)?,
+            tokens_in: count(7)?,
+            tokens_out: count(8)?,
+            usd: row.try_get(9).ok()?,
+            latency_ms: count(10)?,
+            attempts: small(11)?,
+        },
+        at_unix_s: whole(12)?,
+        run: text(13)?,
+    };
+    Some((kept, text(14)?))
+}
+
+/// A count as the database takes it.
+pub(super) fn count(count: u64) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}
+
+/// A text as the database takes it: without the character 0.
+pub(super) fn text(text: &str) -> String {
+    text.replace('\0', "\u{fffd}")
+}

@@ -1,0 +1,43 @@
+//! Ledgers in a server of PostgreSQL that the tests start.
+
+use super::Store;
+use std::time::Duration;
+use wayword_database::{Database, postgres::Client};
+use wayword_ledger::Ledger;
+use wayword_testkit::Postgres;
+
+/// A program without a sign of life for this long has ended. The tests do not wait a minute.
+const GONE: Duration = Duration::from_millis(1500);
+const BEAT: Duration = Duration::from_millis(200);
+
+/// A new database; `None` where PostgreSQL is not installed.
+pub fn new(test: &str) -> Option<Store> {
+    let server = Postgres::shared();
+    if server.is_none() {
+        eprintln!("{test}: skipped for PostgreSQL: it is not installed");
+    }
+    let server = server?;
+    Some(Store { spec: format!("postgres:{}", server.new_database()), _folder: None, _server: Some(server) })
+}
+
+pub fn named(url: &str) -> Database {
+    Database::named(url, None).unwrap()
+}
+
+pub fn open(url: &str) -> Ledger {
+    Ledger::postgres_with_pulse(&named(url), BEAT, GONE).unwrap()
+}
+
+/// A connection past the ledger.
+pub fn past(store: &Store) -> Client {
+    named(store.spec().split_once(':').unwrap().1).connect().unwrap()
+}
+
+/// Waits until the server has noticed that the other clients are gone, and has ended their statements.
+pub fn settle(store: &Store) {
+    let mut client = past(store);
+    let others = "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()";
+    while client.query_one(others, &[]).unwrap().get::<_, i64>(0) > 0 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
