@@ -10,7 +10,7 @@ use std::{env, fmt, path::Path, str::FromStr, time::Duration};
 /// A database, as a user names it.
 #[derive(Clone)]
 pub struct Database {
-    config: Config,
+    config: Box<Config>,
     shown: String,
     password_env: Option<String>,
 }
@@ -63,7 +63,7 @@ impl Database {
         }
         complete(&mut config, text)?;
         let shown = shown(&config);
-        Ok(Self { config, shown, password_env: password_env.map(str::to_owned) })
+        Ok(Self { config: Box::new(config), shown, password_env: password_env.map(str::to_owned) })
     }
 
     /// Its name for messages: user, host, port and database.
@@ -77,7 +77,7 @@ impl Database {
     /// # Errors
     /// When the password cannot be found out, the server does not answer or refuses, or its certificate is not trusted.
     pub fn connect(&self) -> Result<Client, DatabaseError> {
-        let mut config = self.config.clone();
+        let mut config = (*self.config).clone();
         if let Some(password) = password::find(&config, self.password_env.as_deref())? {
             config.password(password);
         }
@@ -99,6 +99,12 @@ impl Database {
                 other => other,
             }
         })
+    }
+}
+
+impl PartialEq for Database {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.shown, &self.password_env) == (&other.shown, &other.password_env)
     }
 }
 

@@ -21,11 +21,17 @@ const OLDEST: i32 = 150_000;
 const LOCK: i64 = 0x5761_7977;
 
 impl Tables {
-    /// Everything that makes the tables of a new database and gives a role the rights of a worker.
+    /// Everything that makes the tables of a new database and, if one is named, gives a role the rights of a worker.
     #[must_use]
-    pub fn sql(&self, role: &str) -> String {
-        let role = format!("\"{}\"", role.replace('"', "\"\""));
-        format!("BEGIN;\n{}\n{}\nCOMMIT;\n", self.made(0), self.grants.replace("ROLE", &role))
+    pub fn sql(&self, role: Option<&str>) -> String {
+        let grants = role.map_or(String::new(), |role| self.granted(role));
+        format!("BEGIN;\n{}{grants}COMMIT;\n", self.made(0))
+    }
+
+    /// The statements that give a role the rights of a worker.
+    #[must_use]
+    pub fn granted(&self, role: &str) -> String {
+        self.grants.replace("ROLE", &format!("\"{}\"", role.replace('"', "\"\"")))
     }
 
     /// The statements from a version to the newest.

@@ -7,6 +7,7 @@ use std::{
 use wayword_core::{Failure, ModelError, PlatformError, platform::is_lost_disk};
 use wayword_formats::FormatError;
 use wayword_navigation::WalkError;
+use wayword_queue::QueueError;
 use wayword_synthesis::{observe::ObserveError, prompts::PromptError, style::StyleError};
 
 /// How the program ends.
@@ -63,6 +64,16 @@ pub enum Error {
     /// Of the ledger.
     #[error(transparent)]
     Ledger(#[from] wayword_ledger::LedgerError),
+    /// Of a run that many workers make.
+    #[error(transparent)]
+    Queue(#[from] wayword_queue::QueueError),
+    /// Of the text that starts workers.
+    #[error(transparent)]
+    Launch(#[from] wayword_queue::launch::LaunchError),
+    /// Of a database.
+    #[cfg(feature = "queue")]
+    #[error(transparent)]
+    Database(#[from] wayword_database::DatabaseError),
     /// A model cannot be reached by its name.
     #[error(transparent)]
     Service(#[from] wayword_remote::ConfigError),
@@ -165,6 +176,9 @@ impl Error {
         match self {
             Self::Io { source, .. } => is_full(source) || is_lost_disk(source),
             Self::Ledger(error) => error.is_lost(),
+            Self::Queue(error) => error.is_lost(),
+            #[cfg(feature = "queue")]
+            Self::Database(error) => error.is_lost(),
             error => matches!(error.of_model(), Some(ModelError::Stopped { is_lost: true, .. })),
         }
     }
@@ -195,6 +209,8 @@ impl Error {
     pub fn exit_code(&self) -> Exit {
         match self {
             Self::Busy(_) | Self::BusyElsewhere { .. } => Exit::Busy,
+            // Another worker has the shard, or took this one's over.
+            Self::Queue(QueueError::Busy { .. } | QueueError::TakenOver(_)) => Exit::Busy,
             Self::Interrupted => Exit::Interrupted,
             error if error.is_of_the_disk() => Exit::Lost,
             error => match error.failure() {

@@ -99,11 +99,14 @@ fn kind(error: &Error) -> &'static str {
         #[cfg(feature = "local")]
         Error::Local(_) => "model",
         Error::Ledger(_) => "ledger",
+        #[cfg(feature = "queue")]
+        Error::Database(_) => "ledger",
+        Error::Queue(_) => "file",
         Error::Walk(_) => "walk",
         #[cfg(feature = "study")]
         Error::Study(_) => "study",
         Error::House(_) | Error::Io { .. } => "file",
-        Error::Usage { .. } => "input",
+        Error::Usage { .. } | Error::Launch(_) => "input",
         Error::ChangedScene { .. } => "platform",
         // Their exit codes say it.
         Error::Interrupted | Error::Busy(_) | Error::BusyElsewhere { .. } => "input",

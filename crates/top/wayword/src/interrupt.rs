@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: a command finishes the items that it works on, or ends at once, with exit code 6.
+//! Ctrl-C, SIGTERM and SIGUSR1 (with which Slurm says that the time ends soon): a command finishes the items that it works on, or ends at once, with exit code 6.
 //!
 //! Inside another program, that one catches the signals and calls [`ask`].
 //!
@@ -8,7 +8,7 @@
 use crate::{calls::Calls, error::Error, output::Output};
 #[cfg(unix)]
 use signal_hook::{
-    consts::{SIGINT, SIGTERM},
+    consts::{SIGINT, SIGTERM, SIGUSR1},
     iterator::Signals,
 };
 use std::{
@@ -98,12 +98,12 @@ pub fn forget() {
 /// Interrupts that are not handled yet.
 pub struct Pending(#[cfg(unix)] Option<Signals>);
 
-/// Catches SIGINT and SIGTERM from now on. SIGHUP is left alone, because `nohup` has to work.
+/// Catches SIGINT, SIGTERM and SIGUSR1 from now on. SIGHUP is left alone, because `nohup` has to work.
 #[cfg(unix)]
 #[must_use]
 pub fn catch() -> Pending {
     // Without a handler the signals end the process, as usual.
-    Pending(Signals::new([SIGINT, SIGTERM]).ok())
+    Pending(Signals::new([SIGINT, SIGTERM, SIGUSR1]).ok())
 }
 
 /// Handles interrupts until the process ends, those since [`catch`] among them.

@@ -155,7 +155,12 @@ fn settings(building: &Building, style: &Path) -> Settings {
 fn damaged_styles_are_used_or_refused() {
     let building = Building::new();
     let file = building.path("mine.toml");
-    let job = Job { settings: settings(&building, &file), service: Service::default(), providers: Providers::new() };
+    let job = Job {
+        settings: settings(&building, &file),
+        service: Service::default(),
+        providers: Providers::new(),
+        keeping: wayword::calls::Keeping::Machine,
+    };
     let settings = &job.settings;
     let quiet = Output::new(true, true);
     for style in [STYLE, COARSE_STYLE] {

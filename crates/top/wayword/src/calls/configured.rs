@@ -32,7 +32,7 @@ pub fn ledger_path(service: &Service) -> Result<PathBuf, Error> {
 ///
 /// # Errors
 /// When a provider's table or the list of prices cannot be read.
-pub(super) fn config(Job { settings, service, providers }: &Job) -> Result<Config, Error> {
+pub(super) fn config(Job { settings, service, providers, .. }: &Job) -> Result<Config, Error> {
     let provider = |(name, table): (&String, &toml::Table)| -> Result<(String, ProviderConfig), Error> {
         let config = table.clone().try_into().map_err(|error: toml::de::Error| {
             Error::usage(format!("[providers.{name}]: {}", error.message()), "see docs/MODELS.md for the names")

@@ -2,6 +2,7 @@
 
 mod configured;
 mod gguf;
+mod keeping;
 #[cfg(feature = "local")]
 mod local;
 #[cfg(not(feature = "local"))]
@@ -30,6 +31,7 @@ use wayword_remote::{Finding, Price, Services};
 use wayword_synthesis::prompts::Manner;
 
 pub use configured::ledger_path;
+pub use keeping::Keeping;
 pub use spent::Spent;
 
 /// The way to models for one command.
@@ -38,6 +40,8 @@ pub struct Calls {
     /// `Some` if a model in process is named.
     local: Option<Local>,
     run: Run,
+    /// The ledger, if it keeps the calls of each chunk in a recording of its own.
+    in_chunks: Option<Ledger>,
     record: Option<PathBuf>,
     workers: usize,
     /// Whether calls wait for a network.
@@ -75,7 +79,7 @@ impl Calls {
         if let Some(recording) = &service.replay {
             File::open(recording).map_err(Error::io(recording, "read the recording"))?;
         } else if !settings.roles.models().is_empty() {
-            Ledger::check_place(&ledger_path(service)?)?;
+            job.keeping.check(service)?;
         }
         let folder = service.record.as_deref().and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
         if let Some(missing) = folder.filter(|folder| !folder.is_dir()) {
@@ -100,8 +104,10 @@ impl Calls {
         }
         let ledger = match &service.replay {
             Some(recording) => Ledger::replay(recording)?,
-            None => Ledger::open(&ledger_path(service)?)?,
+            None => job.keeping.open(service)?,
         };
+        let is_in_chunks = service.replay.is_none() && matches!(job.keeping, Keeping::Chunks(_));
+        let in_chunks = is_in_chunks.then(|| ledger.clone());
         let run = ledger.run(run, Limits { max_usd: service.max_usd, max_calls: service.max_calls })?;
         let services = Services::new(config(job)?, run.clone())?;
         let models = settings.roles.models();
@@ -113,7 +119,7 @@ impl Calls {
         // A command that does not wait for a network has no use for more items than cores.
         let waits = models.iter().any(|name| !is_in_process(name));
         let workers = if waits { concurrency(service).threads() } else { cores() };
-        Ok(Some(Self { services, local, run, record: service.record.clone(), workers, waits }))
+        Ok(Some(Self { services, local, run, in_chunks, record: service.record.clone(), workers, waits }))
     }
 
     /// A model by its name.
@@ -156,6 +162,14 @@ impl Calls {
             Some(local) => local.check(name, sees),
             None => self.services.check(name, sees),
         }
+    }
+
+    /// Keeps the calls from now on in a chunk's recording, if each chunk has its own. No call may be in flight.
+    ///
+    /// # Errors
+    /// When the recording cannot be read or written.
+    pub fn turn_to(&self, recording: &Path) -> Result<(), Error> {
+        self.in_chunks.as_ref().map_or(Ok(()), |ledger| Ok(ledger.turn_to(recording)?))
     }
 
     /// What was spent so far.

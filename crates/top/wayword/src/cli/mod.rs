@@ -6,15 +6,18 @@ mod doctor;
 mod evaluate;
 mod export;
 mod house;
+mod launch;
 mod ledger;
 mod models;
 mod perceive;
 mod pictures;
 mod robustness;
+mod runs;
 mod similarity;
 mod steps;
 mod study;
 mod view;
+mod workers;
 
 use crate::settings::{Asked, AskedPlatform};
 use clap::{Args, Parser, Subcommand};
@@ -26,11 +29,13 @@ pub use doctor::Doctor;
 pub use evaluate::Evaluate;
 pub use export::{AgentDataset, Export, ExportFormat};
 pub use house::House;
+pub use launch::{Launch, LaunchCommand, LaunchKubernetes, LaunchSlurm, Pair};
 pub use ledger::{Ledger, LedgerCommand};
 pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
 pub use pictures::Pictured;
 pub use robustness::Robustness;
+pub use runs::{Runs, RunsCommand, RunsDatabase, RunsMerge, RunsRetry, RunsStatus};
 pub use similarity::{By, Similarity, Tokens};
 pub use steps::AskedSteps;
 pub use study::{
@@ -38,6 +43,7 @@ pub use study::{
     StudyReconcile, StudyRecruiter, StudyResults, StudyServe, StudyStatus,
 };
 pub use view::{View, ViewCommand, ViewMap, ViewPanorama, ViewPath, Walk};
+pub use workers::AskedWorkers;
 
 /// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
 #[derive(Debug, Parser)]
@@ -118,6 +124,10 @@ pub enum Command {
     Platforms,
     /// Draw a panorama, what is seen along a path, or a map.
     View(View),
+    /// Print what starts many workers: a script for Slurm, a manifest for Kubernetes.
+    Launch(Launch),
+    /// Look after a run that many workers make: status, putting together, trying again.
+    Runs(Runs),
     /// Save generated houses as a set of scenes that AI Habitat reads, with episodes that its agents walk.
     House(House),
     /// Print shell completions.
@@ -150,7 +160,9 @@ Examples:
   wayword generate --style mine.toml --style r2r=R2R_train.json --out runs/styles
   wayword generate --paths 20 --llm ollama/qwen3 --see ollama/llava --out runs/models
   wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run
-  wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)")]
+  wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)
+  wayword generate --paths 100000 --out runs/big --plan             (then, on many machines, the same with:)
+  wayword generate --paths 100000 --out runs/big --shard 3/64       (or: --queue wayword_db)")]
 pub struct Generate {
     /// Settings as TOML, with the names of these flags. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
@@ -162,6 +174,9 @@ pub struct Generate {
     /// more, because questions that are asked twice and texts that are rewritten are not counted.
     #[arg(long)]
     pub dry_run: bool,
+    /// Which part of it this worker makes.
+    #[command(flatten)]
+    pub workers: AskedWorkers,
     /// The run.
     #[command(flatten)]
     pub asked: Asked,
@@ -210,7 +225,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     /// Flags of `generate` that have no key in a settings file.
-    const FLAGS_ALONE: [&str; 3] = ["config", "dry_run", "out"];
+    const FLAGS_ALONE: [&str; 9] =
+        ["chunk", "config", "dry_run", "lease_s", "out", "password_env", "plan", "queue", "shard"];
     /// Tables of a settings file that have no flag.
     const TABLES: [&str; 3] = ["providers", "roles", "service"];
 

@@ -11,6 +11,7 @@ mod evaluate;
 mod export;
 mod generate;
 mod house;
+mod launch;
 mod ledger;
 #[cfg(feature = "local")]
 mod models;
@@ -18,6 +19,7 @@ mod perceive;
 mod platforms;
 mod report;
 pub(crate) mod robustness;
+mod runs;
 mod similarity;
 #[cfg(feature = "study")]
 mod study;
@@ -67,6 +69,8 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         }
         Command::Platforms => platforms::run(output),
         Command::View(args) => view::run(&args, output),
+        Command::Launch(args) => launch::run(&args, output),
+        Command::Runs(args) => runs::run(&args, output),
         Command::House(args) => house::run(&args, output),
         Command::Completions { shell } => completions::run(shell),
     }

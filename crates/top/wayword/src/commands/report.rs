@@ -6,7 +6,7 @@ use crate::{
     error::{Error, Exit},
     output::Output,
     report,
-    run::file,
+    run::{file, refuse_unmerged},
 };
 use std::{fs, path::Path};
 
@@ -35,6 +35,7 @@ fn expect_run(folder: &Path) -> Result<(), Error> {
     if is_run(folder) {
         return Ok(());
     }
+    refuse_unmerged(folder)?;
     let name = folder.display();
     let around = folder.parent().filter(|around| folder.is_file() && is_run(around));
     let within = runs_within(folder);

@@ -24,9 +24,7 @@ where
 }
 
 fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Error {
-    let differs = differing_keys(before, settings);
-    let differs: Vec<&str> = differs.iter().map(String::as_str).filter(|key| *key != "raised_from").collect();
-    let differs = differs.join(", ");
+    let differs = differing(before, settings).into_iter().collect::<Vec<_>>().join(", ");
     let problem = format!("{} holds a run with other settings: {differs}", folder.display());
     let config = folder.join(file::CONFIG);
     Error::usage(
@@ -60,9 +58,31 @@ pub(super) fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Er
 }
 
 fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), Error> {
+    write_whole(path, &config_text(settings)?)
+}
+
+/// Settings as `config.toml` has them.
+///
+/// # Errors
+/// When they cannot be written as TOML.
+pub(crate) fn config_text<S: Serialize + OwnFormat>(settings: &S) -> Result<String, Error> {
     let text = toml::to_string_pretty(settings)
         .map_err(|error| Error::usage(format!("the settings cannot be written: {error}"), "report this as a bug"))?;
-    write_whole(path, &own_format::headed::<S>(&text))
+    Ok(own_format::headed::<S>(&text))
+}
+
+/// Refuses a folder whose run lies in chunks, because its files are not there yet.
+///
+/// # Errors
+/// When the run is not merged.
+pub(crate) fn refuse_unmerged(folder: &Path) -> Result<(), Error> {
+    if !is_begun(folder) && folder.join(wayword_queue::PLAN).exists() {
+        return Err(Error::usage(
+            format!("{}: this run lies in chunks", folder.display()),
+            format!("put them together first: wayword runs merge {}", folder.display()),
+        ));
+    }
+    Ok(())
 }
 
 /// Whether a folder holds a run, finished or not.
@@ -89,6 +109,7 @@ pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> 
 /// # Errors
 /// When the folder is not a run folder.
 pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
+    refuse_unmerged(folder)?;
     config_of(folder)
 }
 
@@ -108,6 +129,7 @@ pub(crate) fn table_of(folder: &Path) -> Result<toml::Table, Error> {
 /// When `config.toml` cannot be read or names another format.
 pub(crate) fn refuse_other_format<S: OwnFormat>(folder: &Path) -> Result<(), Error> {
     let path = folder.join(file::CONFIG);
+    refuse_unmerged(folder)?;
     if !path.exists() {
         return Ok(());
     }
@@ -128,7 +150,8 @@ pub(crate) fn config_of<S: OwnFormat>(folder: &Path) -> Result<S, Error> {
     })
 }
 
-fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
+/// The keys in which two settings differ; of their inputs, those whose contents do.
+pub(crate) fn differing<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
     let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
     let (a, b) = (table(a), table(b));
     let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
@@ -139,6 +162,7 @@ fn differing_keys<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
     };
     let inputs = a.get("inputs").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
     let inputs: Vec<String> = inputs.filter_map(contents).collect();
-    let settings = keys.into_iter().filter(differs).filter(|key| *key != "inputs").cloned();
+    let settings =
+        keys.into_iter().filter(differs).filter(|key| !["inputs", "raised_from"].contains(&key.as_str())).cloned();
     settings.chain(inputs).collect()
 }

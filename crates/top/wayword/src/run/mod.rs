@@ -27,12 +27,15 @@ use std::{
 use wayword_world::files;
 
 use config::keep_settings;
-pub(crate) use config::{config_of, keep_config, refuse_other_format, table_of};
+pub(crate) use config::{
+    config_of, config_text, differing, keep_config, refuse_other_format, refuse_unmerged, table_of,
+};
 pub use config::{continued, is_begun, settings_of};
 pub(crate) use held::{Held, hold};
 pub use journal::{Journal, read_lines};
 pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, name_of_text, text_name};
 pub use world_data::WorldData;
+pub(crate) use world_data::hashes;
 
 /// A run folder in which only this process works.
 #[derive(Debug)]
@@ -51,7 +54,7 @@ pub struct RunFolder {
     /// Items that have a line in `walks.jsonl`, but not all the pictures that belong to it.
     without_pictures: BTreeSet<String>,
     /// Keeps other processes out for as long as this lives.
-    _held: Held,
+    _held: Option<Held>,
 }
 
 /// Names of the files in a run folder.
@@ -88,6 +91,20 @@ impl RunFolder {
     pub fn open(folder: &Path, settings: &Settings) -> Result<Self, Error> {
         fs::create_dir_all(folder).map_err(Error::io(folder, "make the run folder"))?;
         let held = hold(folder)?;
+        Self::of(folder, settings, Some(held))
+    }
+
+    /// The folder of a chunk, of which only one worker knows. It is not locked: locks are not reliable on network file
+    /// systems.
+    ///
+    /// # Errors
+    /// When it holds a run with other settings, or it cannot be written.
+    pub(crate) fn of_worker(folder: &Path, settings: &Settings) -> Result<Self, Error> {
+        fs::create_dir_all(folder).map_err(Error::io(folder, "make the chunk's folder"))?;
+        Self::of(folder, settings, None)
+    }
+
+    fn of(folder: &Path, settings: &Settings, held: Option<Held>) -> Result<Self, Error> {
         keep_settings(folder, settings)?;
         let walks = folder.join(file::WALKS);
         Ok(Self {

@@ -26,6 +26,8 @@ const HINT: &str = "make sure that you may read it, or move it away";
 #[derive(Debug)]
 pub struct WorldData {
     path: PathBuf,
+    /// The hashes that the plan of a run of many workers has, and its file.
+    planned: Option<(BTreeMap<String, String>, PathBuf)>,
     state: Mutex<State>,
 }
 
@@ -55,7 +57,13 @@ impl WorldData {
         } else {
             BTreeMap::new()
         };
-        Ok(Self { path, state: Mutex::new(State { kept, ..State::default() }) })
+        Ok(Self { path, planned: None, state: Mutex::new(State { kept, ..State::default() }) })
+    }
+
+    /// The same, which also refuses scenes that differ from a plan's.
+    #[must_use]
+    pub(crate) fn expecting(self, planned: &BTreeMap<String, String>, file: &Path) -> Self {
+        Self { planned: Some((planned.clone(), file.to_owned())), ..self }
     }
 
     /// Refuses a scene whose files are not those that the run was begun with.
@@ -72,6 +80,12 @@ impl WorldData {
         let (kept, now) = (state.kept.get(scene.as_str()), state.now.get(scene.as_str()).cloned().flatten());
         if kept.is_some() && kept != now.as_ref() {
             return Err(Error::ChangedScene { scene: scene.to_string(), record: self.path.clone() });
+        }
+        if let Some((planned, file)) = &self.planned {
+            let planned = planned.get(scene.as_str());
+            if planned.is_some() && planned != now.as_ref() {
+                return Err(Error::ChangedScene { scene: scene.to_string(), record: file.clone() });
+            }
         }
         Ok(())
     }
@@ -93,6 +107,25 @@ impl WorldData {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// The hashes of scenes' files, by scene. Scenes that are read from no file are left out.
+///
+/// # Errors
+/// When a file cannot be read.
+pub(crate) fn hashes<'a>(
+    platform: &dyn Platform,
+    scenes: impl IntoIterator<Item = &'a SceneId>,
+) -> Result<BTreeMap<String, String>, Error> {
+    let mut state = State::default();
+    let mut hashes = BTreeMap::new();
+    for scene in scenes {
+        let files = platform.files(scene)?;
+        if !files.is_empty() {
+            hashes.insert(scene.to_string(), state.hash(&files)?);
+        }
+    }
+    Ok(hashes)
 }
 
 impl State {

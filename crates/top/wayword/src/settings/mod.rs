@@ -5,7 +5,7 @@ mod roles;
 mod service;
 mod sources;
 
-use crate::error::Error;
+use crate::{calls::Keeping, error::Error};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -195,6 +195,8 @@ pub struct Job {
     pub service: Service,
     /// The user's own providers.
     pub providers: Providers,
+    /// Where calls are kept.
+    pub keeping: Keeping,
 }
 
 impl Asked {
@@ -217,7 +219,7 @@ impl Asked {
         ] {
             nameable(flag, path.as_deref())?;
         }
-        Ok(Job { settings, service, providers })
+        Ok(Job { settings, service, providers, keeping: Keeping::Machine })
     }
 
     /// Resolves it; what is not asked for gets its default.

@@ -25,7 +25,7 @@ use crate::{
     count::count,
     error::{Error, Exit},
     output::Output,
-    run::file,
+    run::{file, refuse_unmerged},
     settings::AskedPlatform,
     terms,
 };
@@ -132,6 +132,7 @@ fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), E
 
 /// The records of runs, merged; only those of one style if it is named.
 fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> {
+    runs.iter().try_for_each(|run| refuse_unmerged(run))?;
     let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
     let mut records = jsonl::merge(&files)?;
     let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();

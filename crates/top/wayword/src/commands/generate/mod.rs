@@ -1,42 +1,35 @@
 //! `wayword generate`.
 
+mod fill;
 mod keep;
 mod pace;
 mod progress;
 mod summary;
+mod workers;
 
 use crate::{
     calls::Calls,
     cli::Generate,
     commands::config,
-    count::count,
     error::{Error, Exit},
     follow::KnownScenes,
-    in_order::{cores, in_order},
     interrupt,
     item::Item,
     looking_for::Lookout,
     output::Output,
-    pipeline::{RunPlatform, make},
     plan::Plan,
     platforms::{self, has_hops},
-    run::{RunFolder, WorldData, continued, id_of, is_begun, keep_id, refuse_file, text_name},
+    run::{RunFolder, WorldData, continued, id_of, is_begun, keep_id, refuse_file},
     settings::{Job, Settings},
-    styles::Measured,
     team::Team,
     usable,
 };
-use keep::keep;
-use pace::Pace;
-use progress::Progress;
-use std::{
-    path::Path,
-    sync::atomic::{AtomicUsize, Ordering},
-    thread,
-};
+use fill::Workshop;
+use std::path::Path;
 use wayword_core::{PathRequest, Platform, PlatformError};
 
 pub use summary::{Searched, Summary};
+pub(crate) use workers::Way;
 
 pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let job = args.asked.clone().or(config::read(args.config.as_deref())?).job()?;
@@ -51,6 +44,15 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let out = args.out.as_deref().ok_or_else(|| {
         Error::usage("a run needs a folder", "give --out DIR, or --dry-run to see what the run would cost")
     })?;
+    if args.workers.is_asked() {
+        return workers::run(out, &job, &args.workers, output);
+    }
+    if wayword_queue::Plan::find(out)?.is_some() && !is_begun(out) {
+        return Err(Error::usage(
+            format!("{} holds a run that workers make", out.display()),
+            "give --shard or --queue to make a part of it, or another --out",
+        ));
+    }
     let summary = generate_into(out, &job, output)?;
     output.data(&summary, &summary);
     Ok(summary.exit)
@@ -137,50 +139,9 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     }
     let data = WorldData::of(folder)?;
 
-    let numbers = |measured: &Measured| {
-        let style = measured.style.name.clone();
-        (0..settings.per_path).map(move |number| text_name(&style, number))
-    };
-    let names: Vec<String> = styles.iter().flat_map(numbers).collect();
-    let left = run.left(items, &names);
-    if left.len() < items.len() {
-        let done = items.len() - left.len();
-        let (all, left) = (count(items.len(), "item"), left.len());
-        output.say(format_args!("continuing: {done} of {all} done and kept, {left} to do"));
-    }
+    let shop = Workshop { plan: &plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let mut progress = Progress::new(output, items.len(), left.len(), calls.as_ref(), team.lookout());
-    let workers = calls.as_ref().map_or_else(cores, Calls::workers);
-    let expected = if calls.is_some() { plan.calls_per_item(&left, team.lookout())? } else { 0.0 };
-    let pace = Pace::new(left.len(), workers, expected);
-    let world = RunPlatform { platform: platform.as_ref(), data: Some(&data), scenes: &KnownScenes::new() };
-    let unmade = AtomicUsize::new(left.len());
-    let making = |item: &&Item| {
-        interrupt::check()?;
-        let threads = calls.as_ref().map_or(1, |calls| calls.views_at_once(unmade.load(Ordering::Relaxed)));
-        let made = make(item, settings, world, &team, styles, threads);
-        unmade.fetch_sub(1, Ordering::Relaxed);
-        made
-    };
-    let bar = progress.bar();
-    let kept = thread::scope(|scope| {
-        if let Some(calls) = &calls {
-            let (pace, bar) = (&pace, &bar);
-            let said = |told: &str| output.in_lines(format_args!("{}/{} items, {told}", bar.position(), items.len()));
-            scope.spawn(move || pace.watch(|| calls.spent(), |told| bar.set_message(told.to_owned()), said));
-        }
-        let kept = in_order(&left, workers, making, |item, made| {
-            let fate = keep(&mut run, world, item, made, styles)?;
-            pace.item_is_done();
-            progress.takes_note(&mut run, fate)
-        });
-        pace.end();
-        kept
-    });
-    kept?;
-    run.arrange(items.iter(), &names)?;
-    run.sync()?;
-    let stopped = progress.end();
+    let stopped = shop.fill(&mut run, &data, items, output)?;
     if let Some(calls) = &calls {
         calls.record()?;
     }

@@ -1,0 +1,96 @@
+//! `wayword generate` as one of many workers: makes chunks of a plan.
+
+mod board;
+mod chunk;
+mod planned;
+mod told;
+
+use super::{Workshop, refuse_impossible_paths, warn_of_no_effect};
+use crate::{
+    calls::{Calls, Keeping},
+    cli::AskedWorkers,
+    error::{Error, Exit},
+    follow::KnownScenes,
+    interrupt,
+    looking_for::Lookout,
+    output::Output,
+    plan::Plan,
+    platforms,
+    settings::{Job, Settings},
+    team::Team,
+    usable,
+};
+use board::Counter;
+pub(crate) use board::Way;
+use std::path::Path;
+use told::{Planned, Worked};
+use wayword_queue::{Finished, work};
+
+/// Why a worker stops before nothing is left.
+pub(super) struct Why {
+    reason: String,
+    exit: Exit,
+}
+
+pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, output: &Output) -> Result<Exit, Error> {
+    warn_of_no_effect(&job.settings, output);
+    planned::refuse_other_folder(out)?;
+    let kept = wayword_queue::Plan::find(out)?;
+    let before = kept.as_ref().map(|kept| planned::settings_of(out, kept)).transpose()?;
+    let service = board::part_of(&job.service, asked, output)?;
+    // Which recordings there are is known once this worker has its part.
+    let mut job = Job { service, keeping: Keeping::Chunks(Vec::new()), ..job.clone() };
+    if let Some(before) = &before {
+        job.settings.left_out.clone_from(&before.left_out);
+    }
+    if !asked.plan {
+        Calls::ready(&job, output)?;
+    }
+    let platform = platforms::open(&job.settings)?;
+    if before.is_none() {
+        job.settings = usable::settled(&job.settings, platform.as_ref(), output)?;
+    }
+    let plan = Plan::writing(&job, platform.as_ref())?;
+    let settings = plan.settings()?;
+    if before.is_none() {
+        usable::tell_of_episodes(&settings, &plan.items, platform.as_ref(), output)?;
+        refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
+        planned::put(out, &plan, &settings, asked)?;
+    }
+    let kept = wayword_queue::Plan::of(out)?;
+    planned::agree(out, &kept, &plan, &settings, asked)?;
+    if asked.plan {
+        let told = Planned::of(out, &kept);
+        output.data(&told, &told);
+        return Ok(Exit::Done);
+    }
+    let worked = make_chunks(out, &kept, &plan, &settings, asked, output)?;
+    output.data(&worked, &worked);
+    Ok(worked.exit)
+}
+
+fn make_chunks(
+    out: &Path,
+    kept: &wayword_queue::Plan,
+    plan: &Plan<'_>,
+    settings: &Settings,
+    asked: &AskedWorkers,
+    output: &Output,
+) -> Result<Worked, Error> {
+    let counter = Counter::open(out, kept, asked)?;
+    let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
+    let calls = Calls::open(&job, &kept.run, output)?;
+    let lookout = Lookout::of(settings, calls.as_ref(), &plan.styles)?;
+    let team = Team::new(settings, calls.as_ref(), plan.platform)?.with(lookout);
+    let shop = Workshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
+    let _graceful = interrupt::finish_first(calls.as_ref());
+    let make = |claimed| chunk::make(out, kept, &shop, claimed, output);
+    let finished: Finished<Why> = counter.with(|board| work(board, make, interrupted))?;
+    counter.close(out)?;
+    Worked::of(out, kept, finished, calls.as_ref().map(Calls::spent))
+}
+
+fn interrupted() -> Option<Why> {
+    interrupt::is_asked()
+        .then(|| Why { reason: "interrupted: its chunk was handed back".to_owned(), exit: Exit::Interrupted })
+}

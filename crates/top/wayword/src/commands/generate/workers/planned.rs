@@ -1,0 +1,79 @@
+//! The plan of a run as its settings and items say, and as the folder has it.
+
+use crate::{
+    cli::AskedWorkers,
+    error::Error,
+    item::Item,
+    own_format,
+    plan::Plan,
+    run::{config_text, differing, fresh_id, hashes, is_begun},
+    settings::Settings,
+};
+use std::{collections::BTreeSet, fs, path::Path};
+
+/// Items in a chunk, unless the user says otherwise.
+const CHUNK: usize = 64;
+
+/// Refuses a folder that holds a run of one machine.
+pub(super) fn refuse_other_folder(out: &Path) -> Result<(), Error> {
+    crate::run::refuse_file(out)?;
+    if is_begun(out) && wayword_queue::Plan::find(out)?.is_none() {
+        return Err(Error::usage(
+            format!("{} holds a run that one machine makes", out.display()),
+            "continue it without --plan, --shard and --queue, or give another --out",
+        ));
+    }
+    Ok(())
+}
+
+/// The settings that a plan holds.
+pub(crate) fn settings_of(out: &Path, plan: &wayword_queue::Plan) -> Result<Settings, Error> {
+    own_format::read(&plan.config).map_err(|unread| {
+        let hint = unread.hint("it was changed by hand or by another version: use another folder");
+        Error::usage(format!("{}: {unread}", out.join(wayword_queue::PLAN).display()), hint)
+    })
+}
+
+/// Writes the plan, unless another worker has just done so.
+pub(super) fn put(out: &Path, plan: &Plan<'_>, settings: &Settings, asked: &AskedWorkers) -> Result<(), Error> {
+    fs::create_dir_all(out.join("chunks")).map_err(Error::io(out, "make the run folder"))?;
+    let chunk = asked.chunk.unwrap_or(CHUNK);
+    if chunk == 0 {
+        return Err(Error::usage("--chunk 0 holds no item", "give at least 1, or leave the flag out for 64"));
+    }
+    let items: Vec<String> = plan.items.iter().map(Item::id).collect();
+    let mut new = wayword_queue::Plan::new(fresh_id("run"), chunk, config_text(settings)?, items);
+    let scenes: BTreeSet<_> = plan.items.iter().map(Item::scene).collect();
+    new.data = hashes(plan.platform, scenes)?;
+    new.estimate = serde_json::to_value(plan.estimate()?).unwrap_or_default();
+    new.put(out)?;
+    Ok(())
+}
+
+/// Refuses to work on a plan with other settings, items or chunks than this worker has.
+pub(super) fn agree(
+    out: &Path,
+    kept: &wayword_queue::Plan,
+    plan: &Plan<'_>,
+    settings: &Settings,
+    asked: &AskedWorkers,
+) -> Result<(), Error> {
+    let before = settings_of(out, kept)?;
+    let mut differs: Vec<String> = differing(&before, settings).into_iter().collect();
+    if asked.chunk.is_some_and(|chunk| chunk != kept.chunk) {
+        differs.push(format!("chunk ({} in the plan)", kept.chunk));
+    }
+    if differs.is_empty() && !plan.items.iter().map(Item::id).eq(kept.items.iter().cloned()) {
+        differs.push("the items that the data gives".to_owned());
+    }
+    if differs.is_empty() {
+        return Ok(());
+    }
+    Err(Error::usage(
+        format!("{} holds the plan of another run; these differ: {}", out.display(), differs.join(", ")),
+        format!(
+            "give all workers the settings, files and data of the plan ({}), or give another --out",
+            out.join(wayword_queue::PLAN).display()
+        ),
+    ))
+}
