@@ -13,7 +13,7 @@ use std::{
     thread,
     time::{Duration, Instant, SystemTime},
 };
-use wayword_ledger::{Answer, Attempts, Refused, Run};
+use wayword_ledger::{Answer, Attempts, LedgerError, Refused, Run};
 
 /// How often a thread that waits for its next attempt checks whether the run was stopped.
 const LOOK_UP: Duration = Duration::from_millis(100);
@@ -73,6 +73,8 @@ enum Attempt {
     Fault(Fault),
     /// The run was stopped, or the endpoint closed, before anything was sent.
     NotSent,
+    /// The ledger, which keeps the rate of all workers, could not be used. Nothing was sent.
+    NoTurn(LedgerError),
 }
 
 impl Size {
@@ -120,6 +122,10 @@ impl Sending<'_> {
                     attempts.cancelled();
                     self.open()?;
                     return Err(Unanswered::Refused(Refused::Stopped));
+                }
+                Attempt::NoTurn(error) => {
+                    attempts.cancelled();
+                    return Err(Unanswered::Refused(error.into()));
                 }
             };
             let retry = self.give_up_or(fault, attempts)?;
@@ -174,7 +180,15 @@ impl Sending<'_> {
         let endpoint = self.endpoint;
         let stopped = || self.run.is_stopped() || endpoint.closed().is_some();
         let tokens = self.size.tokens_in() + self.size.max_tokens;
-        let Some(permit) = endpoint.limiter.enter(tokens, stopped) else { return Attempt::NotSent };
+        let Some(mut permit) = endpoint.limiter.enter(tokens, stopped) else { return Attempt::NotSent };
+        if self.run.shares_rates() {
+            let (name, rates) = endpoint.rates();
+            match self.run.wait_turn(&name, rates, tokens, stopped) {
+                Ok(true) => permit.leaves(),
+                Ok(false) => return Attempt::NotSent,
+                Err(error) => return Attempt::NoTurn(error),
+            }
+        }
         let received = endpoint.post(self.wire, body);
         let latency = permit.latency();
         let heard = match received {

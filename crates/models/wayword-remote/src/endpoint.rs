@@ -9,6 +9,7 @@ use crate::{
     transport::{Received, Transport},
 };
 use std::{sync::OnceLock, time::Duration};
+use wayword_ledger::Rates;
 
 /// Why no more requests are sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,11 +30,14 @@ pub(crate) struct Endpoint {
 }
 
 impl Endpoint {
-    pub(crate) fn new(provider: Provider, config: &Config) -> Self {
+    /// With `shares_rates` the ledger keeps the rates that the user sets, for all workers together. What the service
+    /// advertises is kept here all the same.
+    pub(crate) fn new(provider: Provider, config: &Config, shares_rates: bool) -> Self {
+        let own = |rate: Option<f64>| rate.filter(|_| !shares_rates);
         let rules = Rules {
             concurrency: config.concurrency,
-            requests_per_minute: provider.requests_per_minute,
-            tokens_per_minute: provider.tokens_per_minute,
+            requests_per_minute: own(provider.requests_per_minute),
+            tokens_per_minute: own(provider.tokens_per_minute),
         };
         let timeout = Duration::from_secs_f64(config.timeout_s);
         Self {
@@ -43,6 +47,16 @@ impl Endpoint {
             closed: OnceLock::new(),
             provider,
         }
+    }
+
+    /// The rates that the user sets, for a ledger that keeps them for all workers, and what they are called there.
+    pub(crate) fn rates(&self) -> (String, Rates) {
+        let per_s = |per_minute: Option<f64>| per_minute.map(|rate| rate / 60.0);
+        let rates = Rates {
+            requests_per_s: per_s(self.provider.requests_per_minute),
+            tokens_per_s: per_s(self.provider.tokens_per_minute),
+        };
+        (format!("{} {}", self.provider.name, self.provider.base_url.as_str()), rates)
     }
 
     /// The key, if the provider has one.

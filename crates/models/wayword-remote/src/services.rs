@@ -118,7 +118,7 @@ impl Services {
         if let (true, Some(first)) = (for_one, endpoints.keys().next()) {
             return Err(ConfigError::Several { first: first.clone(), second: provider.to_owned() });
         }
-        let endpoint = Arc::new(Endpoint::new(resolved, &self.config));
+        let endpoint = Arc::new(Endpoint::new(resolved, &self.config, self.run.shares_rates()));
         endpoints.insert(provider.to_owned(), Arc::clone(&endpoint));
         Ok(endpoint)
     }

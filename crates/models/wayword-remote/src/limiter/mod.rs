@@ -78,6 +78,11 @@ impl Permit<'_> {
         self.ticket.left_at.elapsed()
     }
 
+    /// Notes that the request leaves only now, after a wait that says nothing about the service.
+    pub(crate) fn leaves(&mut self) {
+        self.ticket.left_at = Instant::now();
+    }
+
     /// Takes over the limits that the service gives.
     pub(crate) fn learn(&self, advertised: Advertised) {
         self.limiter.gate().learn(advertised, Instant::now());
