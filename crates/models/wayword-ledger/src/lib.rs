@@ -1,9 +1,15 @@
 //! The ledger: makes each call of a model once and keeps the answer.
 //!
-//! All runs share one file. A call's key covers everything that could change its answer. The ledger writes a request to
-//! disk before it is sent, and an answer before it is returned. So a run that was killed pays twice at most for the
-//! requests that were in flight, and the ledger knows how much that was. Several programs may use one file at once: one
-//! of them makes a call, and the others wait for its answer.
+//! A call's key covers everything that could change its answer. The ledger writes a request to disk before it is sent,
+//! and an answer before it is returned. So a run that was killed pays twice at most for the requests that were in
+//! flight, and the ledger knows how much that was. Several programs may use one ledger at once: one of them makes a
+//! call, and the others wait for its answer.
+//!
+//! A ledger is kept in one of three stores, and behaves the same in all of them:
+//! - a file on a disk of this machine ([`Ledger::open`]), which all runs share;
+//! - recordings of the chunks of one shard ([`Ledger::in_chunks`]), on any file system, for one program at a time;
+//! - a database of PostgreSQL (`Ledger::postgres`, with the feature `postgres`), for any number of machines. There, the
+//!   limits of a run and the rates of providers hold for all programs together.
 //!
 //! Architecture invariant: this crate does not interpret calls, and its interface does not expose the database.
 

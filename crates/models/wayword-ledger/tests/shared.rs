@@ -18,7 +18,7 @@ use std::{
     thread,
     time::Duration,
 };
-use wayword_ledger::{Answer, Call, Filter, Ledger, Limits, OnceError, Refused, Run};
+use wayword_ledger::{Answer, Call, Filter, Limits, OnceError, Refused, Run};
 
 const LEDGER: &str = "WAYWORD_TEST_SHARED_LEDGER";
 const HANGS: &str = "WAYWORD_TEST_HANGING_LEDGER";

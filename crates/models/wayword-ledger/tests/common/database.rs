@@ -1,7 +1,7 @@
 //! Ledgers in a server of PostgreSQL that the tests start.
 
 use super::Store;
-use std::time::Duration;
+use std::{sync::Arc, time::Duration};
 use wayword_database::{Database, postgres::Client};
 use wayword_ledger::Ledger;
 use wayword_testkit::Postgres;
@@ -16,8 +16,12 @@ pub fn new(test: &str) -> Option<Store> {
     if server.is_none() {
         eprintln!("{test}: skipped for PostgreSQL: it is not installed");
     }
-    let server = server?;
-    Some(Store { spec: format!("postgres:{}", server.new_database()), _folder: None, _server: Some(server) })
+    server.map(on)
+}
+
+/// A new database of a server.
+pub fn on(server: Arc<Postgres>) -> Store {
+    Store { spec: format!("postgres:{}", server.new_database()), _folder: None, _server: Some(server) }
 }
 
 pub fn named(url: &str) -> Database {

@@ -1,6 +1,12 @@
 //! The stores that the tests run with, so that all of them are held to the same.
 
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "no test uses all of it, and a test may panic")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "no test uses all of it, and a test may panic"
+)]
 
 #[cfg(feature = "postgres")]
 pub mod database;

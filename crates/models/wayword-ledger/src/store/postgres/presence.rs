@@ -45,7 +45,7 @@ DELETE FROM wayword_ledger.claims WHERE holder = $1";
 pub(super) struct Presence {
     link: Arc<Link>,
     /// The thread ends when this is dropped.
-    _stop: mpsc::Sender<()>,
+    stop: Option<mpsc::Sender<()>>,
 }
 
 impl Presence {
@@ -61,7 +61,7 @@ impl Presence {
             .name("ledger's signs of life".to_owned())
             .spawn(move || go_on(&pool, &of, pulse.beat, &stopped))
             .map_err(LedgerError::io(link.place(), "start the ledger's thread"))?;
-        Ok(Self { link: Arc::clone(link), _stop: stop })
+        Ok(Self { link: Arc::clone(link), stop: Some(stop) })
     }
 }
 
@@ -80,6 +80,7 @@ fn beat(pool: &Pool, program: &str) -> Result<(), LedgerError> {
 
 impl Drop for Presence {
     fn drop(&mut self) {
+        self.stop = None;
         // One try alone, because a program that ends does not wait for a server that is away: others notice it later.
         if let Ok(mut client) = self.link.pool.database().connect() {
             let _ = client.execute(LEAVE, &[&self.link.program]);

@@ -87,8 +87,8 @@ mod tests {
     fn in_no_second_more_than_the_rate_and_a_burst_leave() {
         for per_s in [0.5, 1.0, 7.0, 20.0, 60.0, 200.0, 3000.0] {
             let share = Share::of(Some(per_s), 1.0, LEAST_BURST).unwrap();
-            let most = (per_s * (1.0 + share.early_s + share.late_s) + 1.0).floor();
-            assert!(most <= (per_s + (per_s * BURST_S).max(LEAST_BURST)).floor(), "{per_s}: {most}");
+            let most = (per_s * (1.0 + share.early_s + share.late_s)).ceil();
+            assert!(most <= (per_s + (per_s * BURST_S).max(LEAST_BURST)).ceil(), "{per_s}: {most}");
         }
         assert_eq!([None, Some(0.0), Some(f64::NAN)].map(|per_s| Share::of(per_s, 1.0, 1.0)), [None; 3]);
     }
