@@ -11,7 +11,7 @@ use wayword::cli::Cli;
 use wayword_testkit::documents::{self, Documented};
 
 /// Commands that a test cannot run: a word by which to recognise them, and what they need. The test runs all others.
-const NEEDS: [(&str, &str); 12] = [
+const NEEDS: [(&str, &str); 13] = [
     ("data/scene_datasets", "HM3D"),
     ("--data SCENES", "scans, and viewpoint graphs for them"),
     ("--platform matterport", "Matterport3D's files"),
@@ -24,11 +24,13 @@ const NEEDS: [(&str, &str); 12] = [
     ("ollama/", "Ollama, with the model"),
     ("openai/", "a key of OpenAI's"),
     ("hf/", "weights from the hub"),
+    ("wayword_db", "PostgreSQL"),
 ];
 
 /// Subcommands that a test cannot run with any arguments, and what they need.
-const COMMANDS_NEED: [(&str, &str); 3] = [
+const COMMANDS_NEED: [(&str, &str); 4] = [
     ("ledger", "a ledger, which calls of models make"),
+    ("runs", "workers that have made the whole run"),
     ("similarity", "the weights of a sentence encoder"),
     ("study", "runs, and people"),
 ];
