@@ -61,7 +61,7 @@ pub struct LaunchSlurm {
     /// Name of the array.
     #[arg(long, default_value = "wayword")]
     pub name: String,
-    /// An existing folder for the logs.
+    /// Folder for the logs. It has to be there when the script is submitted; --submit makes it.
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub logs: String,
     /// Environment variable that workers get from who submits, such as PGPASSFILE or the variable of a key. May be given several times.

@@ -7,6 +7,7 @@ use crate::{
 };
 use serde_json::json;
 use std::{
+    fs,
     io::Write,
     process::{Command, Stdio},
 };
@@ -37,6 +38,8 @@ fn slurm(args: &LaunchSlurm, output: &Output) -> Result<Exit, Error> {
         ..SlurmJob::new(worker, &args.time)
     })?;
     if args.submit {
+        // Slurm starts no job whose log it cannot write.
+        fs::create_dir_all(&args.logs).map_err(Error::io(&args.logs, "make the folder of the logs"))?;
         let told = submit(&text)?;
         output.data(&json!({ "submitted": told }), &told);
     } else {
