@@ -32,6 +32,16 @@ pub enum DatabaseError {
         /// The server's version.
         version: String,
     },
+    /// The database cannot hold every text.
+    #[error(
+        "{database}: the encoding of this database is {encoding}, which cannot hold every text\nhint: make one with `createdb --encoding=UTF8 --template=template0 NAME`, and name that"
+    )]
+    Encoding {
+        /// The database.
+        database: String,
+        /// Its encoding.
+        encoding: String,
+    },
     /// A newer version of the program made the tables.
     #[error(
         "{database}: a newer version of this program made the tables of {schema} (version {version})\nhint: use that version, or another database"

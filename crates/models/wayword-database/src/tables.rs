@@ -57,12 +57,17 @@ fn steps_len(steps: &[&str]) -> i32 {
 pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
     let database = pool.database().shown().to_owned();
     let about = pool.with("ask for the server's version", |connection| {
-        let row = connection.client().query_one("SELECT current_setting('server_version_num')::int, version()", &[])?;
-        Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, String>(1)?))
+        let sql = "SELECT current_setting('server_version_num')::int, version(), current_setting('server_encoding')";
+        let row = connection.client().query_one(sql, &[])?;
+        Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, String>(1)?, row.try_get::<_, String>(2)?))
     })?;
     if about.0 < OLDEST {
         let version = about.1.split_whitespace().nth(1).unwrap_or_default().to_owned();
         return Err(DatabaseError::TooOld { database, version });
+    }
+    // Otherwise an answer that was paid for could not be stored.
+    if about.2 != "UTF8" {
+        return Err(DatabaseError::Encoding { database, encoding: about.2 });
     }
     let newest = steps_len(tables.steps);
     let found = pool.with("ask for the version of the tables", |connection| version(connection, tables))?;

@@ -2,6 +2,7 @@
 
 use crate::{Board, Claimed, Done, Left, Plan, QueueError, TRIES, reopen};
 use std::{
+    path::{Path, PathBuf},
     sync::{Arc, mpsc},
     thread::{self, JoinHandle},
     time::Duration,
@@ -43,15 +44,16 @@ GRANT SELECT, INSERT, UPDATE, DELETE ON wayword_queue.workers TO ROLE;
 /// Gives up what was begun too often by workers that are gone.
 const BURY: &str = "
 UPDATE wayword_queue.chunks AS c SET state = 'dead', reason = 'begun ' || tries || ' times without a result: its worker ended each time'
-WHERE run = $1 AND state = 'running' AND tries >= $2 AND NOT EXISTS (
+WHERE run = $1 AND state = 'running' AND tries >= $2 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
     SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
 )";
 
-/// Gives the first chunk that is open, or whose worker is gone. Of two that ask at once each gets another one.
+/// Gives the first chunk that is open, or whose worker is gone. Nobody is gone before the server has been up for that long: while
+/// it was away, nobody could give a sign of life. Of two that ask at once each gets another one.
 const CLAIM: &str = "
 WITH next AS (
     SELECT c.chunk FROM wayword_queue.chunks AS c
-    WHERE c.run = $1 AND (c.state = 'open' OR (c.state = 'running' AND c.tries < $4 AND NOT EXISTS (
+    WHERE c.run = $1 AND (c.state = 'open' OR (c.state = 'running' AND c.tries < $4 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
         SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
     )))
     ORDER BY c.chunk LIMIT 1 FOR UPDATE SKIP LOCKED
@@ -87,6 +89,8 @@ pub struct Queue {
     pool: Arc<Pool>,
     run: String,
     worker: String,
+    /// Where the marks of finished chunks go.
+    folder: PathBuf,
     lease: Duration,
     beating: Option<(mpsc::Sender<()>, JoinHandle<()>)>,
 }
@@ -127,14 +131,21 @@ pub struct Seen {
 }
 
 impl Queue {
-    /// A queue for a plan's run, without a worker: to look at it.
+    /// A queue for the run of a folder's plan, without a worker: to look at it.
     ///
     /// # Errors
     /// When the database cannot be used, or has a run of that name with another plan.
-    pub fn open(database: Database, plan: &Plan) -> Result<Self, QueueError> {
+    pub fn open(database: Database, folder: &Path, plan: &Plan) -> Result<Self, QueueError> {
         let pool = Arc::new(Pool::new(database, CONNECTIONS));
         prepare(&pool, &TABLES)?;
-        let queue = Self { pool, run: plan.run.clone(), worker: String::new(), lease: crate::FRESH, beating: None };
+        let queue = Self {
+            pool,
+            run: plan.run.clone(),
+            worker: String::new(),
+            folder: folder.to_owned(),
+            lease: crate::FRESH,
+            beating: None,
+        };
         queue.enter(plan)?;
         Ok(queue)
     }
@@ -245,7 +256,7 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used or a mark cannot be written.
-    pub fn mark(&self, folder: &std::path::Path) -> Result<usize, QueueError> {
+    pub fn mark(&self) -> Result<usize, QueueError> {
         let kept: Vec<String> = self.pool.with("ask for the finished chunks", |connection| {
             let sql = "SELECT done FROM wayword_queue.chunks WHERE run = $1 AND state = 'done' AND done IS NOT NULL";
             connection.rows(sql, &[&self.run])?.iter().map(|row| row.try_get(0)).collect()
@@ -256,8 +267,8 @@ impl Queue {
                 path: crate::PLAN.into(),
                 problem: format!("the database has a result that cannot be read: {error}"),
             })?;
-            if !crate::done_path(folder, done.chunk).exists() {
-                marked += usize::from(done.put(folder)?);
+            if !crate::done_path(&self.folder, done.chunk).exists() {
+                marked += usize::from(done.put(&self.folder)?);
             }
         }
         Ok(marked)
@@ -267,11 +278,11 @@ impl Queue {
     ///
     /// # Errors
     /// When the database cannot be used or a mark cannot be removed.
-    pub fn retry(&self, folder: &std::path::Path, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
+    pub fn retry(&self, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
         // The marks of dead chunks are in the database alone.
         let dead = self.look()?.dead.into_iter().filter(|(_, why)| why.contains(reason)).map(|(chunk, _)| chunk);
         let dead: Vec<usize> = dead.collect();
-        let mut open = reopen(folder, plan, reason)?;
+        let mut open = reopen(&self.folder, plan, reason)?;
         open.extend(dead);
         open.sort_unstable();
         open.dedup();
@@ -316,6 +327,7 @@ impl Board for Queue {
     fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
         let kept = serde_json::to_string(done).unwrap_or_default();
         if self.changed("complete a chunk", COMPLETE, claimed, &[&kept])? {
+            done.put(&self.folder)?;
             return Ok(true);
         }
         // Perhaps the first try was carried out, and its answer lost.

@@ -53,9 +53,10 @@ SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1), EXISTS (SELECT 
 
 const IS_ANSWERED: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)";
 
+/// A server that has just started has heard of nobody for a while, so nobody has ended yet.
 const HOLDER: &str = "
 SELECT holder, (SELECT count(*) FROM wayword_ledger.sent AS s WHERE s.key = c.key AND s.program = c.holder),
-    NOT EXISTS (
+    pg_postmaster_start_time() < clock_timestamp() - make_interval(secs => $2) AND NOT EXISTS (
         SELECT FROM wayword_ledger.presence AS p
         WHERE p.program = c.holder AND p.beat > clock_timestamp() - make_interval(secs => $2)
     )

@@ -27,11 +27,11 @@ INSERT INTO wayword_ledger.presence (program, beat)
 SELECT $1, clock_timestamp() WHERE set_config('synchronous_commit', 'off', true) = 'off'
 ON CONFLICT (program) DO UPDATE SET beat = clock_timestamp()";
 
-/// Removes what ended programs have left behind.
+/// Removes what ended programs have left behind. After a start of the server, nobody could give a sign of life before.
 const SWEEP: &str = "
 WITH old AS (
     SELECT program FROM wayword_ledger.presence WHERE beat < clock_timestamp() - make_interval(secs => $1)
-    FOR UPDATE SKIP LOCKED
+    AND pg_postmaster_start_time() < clock_timestamp() - make_interval(secs => $1) FOR UPDATE SKIP LOCKED
 ),
 gone AS (DELETE FROM wayword_ledger.presence AS p USING old WHERE p.program = old.program RETURNING p.program)
 DELETE FROM wayword_ledger.claims USING gone WHERE claims.holder = gone.program";

@@ -21,7 +21,7 @@ pub(super) fn run(args: &RunsRetry, output: &Output) -> Result<Exit, Error> {
     let chunks = match queue_of(&args.run, &plan, args.password_env.as_deref())? {
         None => reopen(&args.run, &plan, &args.reason)?,
         #[cfg(feature = "queue")]
-        Some(queue) => queue.retry(&args.run, &plan, &args.reason)?,
+        Some(queue) => queue.retry(&plan, &args.reason)?,
         #[cfg(not(feature = "queue"))]
         Some(never) => match never {},
     };

@@ -39,7 +39,7 @@ pub(super) fn queue_of(
 ) -> Result<Option<wayword_queue::Queue>, Error> {
     let Some(Way::Queue(name)) = Way::of(folder)? else { return Ok(None) };
     let database = wayword_database::Database::named(&name, password_env)?;
-    Ok(Some(wayword_queue::Queue::open(database, plan)?))
+    Ok(Some(wayword_queue::Queue::open(database, folder, plan)?))
 }
 
 /// None: this build has no way to a database.

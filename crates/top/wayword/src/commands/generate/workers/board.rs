@@ -2,8 +2,8 @@
 
 use crate::{calls::Keeping, cli::AskedWorkers, error::Error, output::Output, settings::Service};
 use serde::{Deserialize, Serialize};
-use std::{fs, path::Path};
-use wayword_queue::{Beat, Board, Heart, Part, Plan, Shard, chunk_folder, put_new, worker_name};
+use std::path::Path;
+use wayword_queue::{Beat, Board, Heart, Part, Plan, Shard, chunk_folder, put_new};
 
 /// The file that says how a run's chunks are handed out: by one way alone.
 const FILE: &str = "workers.json";
@@ -79,30 +79,30 @@ pub(super) enum Counter<'a> {
 
 impl<'a> Counter<'a> {
     /// Joins the workers of a run.
-    pub(super) fn open(folder: &'a Path, plan: &'a Plan, asked: &AskedWorkers) -> Result<Self, Error> {
+    pub(super) fn open(folder: &'a Path, plan: &'a Plan, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
         match (asked.shard, &asked.queue) {
             (Some(part), _) => {
-                let token = worker_name();
+                let token = worker.to_owned();
                 Way::Shards.keep(folder)?;
                 let beat = Beat { worker: token.clone(), token, part: format!("shard {part}") };
                 let heart = Heart::start(folder, &part.name(), beat, asked.lease(), |file| part.overlaps(file))?;
                 Ok(Self::Shard { folder, plan, part, heart })
             }
-            (None, Some(name)) => Self::queue(folder, plan, name, asked),
+            (None, Some(name)) => Self::queue(folder, plan, name, worker, asked),
             (None, None) => Err(Error::usage("this worker has no part", "give --shard or --queue")),
         }
     }
 
     #[cfg(feature = "queue")]
-    fn queue(folder: &Path, plan: &Plan, name: &str, asked: &AskedWorkers) -> Result<Self, Error> {
+    fn queue(folder: &Path, plan: &Plan, name: &str, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
         let database = wayword_database::Database::named(name, asked.password_env.as_deref())?;
         Way::Queue(name.to_owned()).keep(folder)?;
-        let queue = wayword_queue::Queue::open(database.clone(), plan)?.join(&worker_name(), asked.lease())?;
+        let queue = wayword_queue::Queue::open(database.clone(), folder, plan)?.join(worker, asked.lease())?;
         Ok(Self::Queue { queue, database })
     }
 
     #[cfg(not(feature = "queue"))]
-    fn queue(_: &Path, _: &Plan, _: &str, _: &AskedWorkers) -> Result<Self, Error> {
+    fn queue(_: &Path, _: &Plan, _: &str, _: &str, _: &AskedWorkers) -> Result<Self, Error> {
         Err(Error::not_built("--queue cannot be used: this build has no way to a database"))
     }
 
@@ -127,12 +127,12 @@ impl<'a> Counter<'a> {
         }
     }
 
-    /// Writes the marks that killed workers did not write.
-    pub(super) fn close(&self, folder: &Path) -> Result<(), Error> {
+    /// Writes the marks that killed workers of a queue did not write.
+    pub(super) fn close(&self) -> Result<(), Error> {
         match self {
-            Self::Shard { .. } => fs::metadata(folder).map(drop).map_err(Error::io(folder, "look at")),
+            Self::Shard { .. } => Ok(()),
             #[cfg(feature = "queue")]
-            Self::Queue { queue, .. } => Ok(queue.mark(folder).map(drop)?),
+            Self::Queue { queue, .. } => Ok(queue.mark().map(drop)?),
         }
     }
 }

@@ -14,7 +14,7 @@ use std::{
     path::Path,
     time::{Instant, SystemTime, UNIX_EPOCH},
 };
-use wayword_queue::{Claimed, Done, Ended, Plan, chunk_folder, sync_tree, worker_name};
+use wayword_queue::{Claimed, Done, Ended, Plan, chunk_folder, sync_tree};
 
 /// Longest reason of a failure that a mark keeps, characters.
 const MOST_REASON_CHARS: usize = 200;
@@ -24,6 +24,7 @@ pub(super) fn make(
     plan: &Plan,
     shop: &Workshop<'_>,
     claimed: Claimed,
+    worker: &str,
     output: &Output,
 ) -> Result<Ended<Why>, Error> {
     let (since, before) = (Instant::now(), usd(shop));
@@ -31,7 +32,7 @@ pub(super) fn make(
     match fill(&folder, out, plan, shop, claimed, output) {
         Ok(None) => {
             let spent = Spent { seconds: since.elapsed().as_secs_f64(), usd: usd(shop) - before };
-            let done = done(&folder, claimed, spent)?;
+            let done = Done { worker: worker.to_owned(), ..done(&folder, claimed, spent)? };
             output.say(format_args!(
                 "chunk {} of {}: {}, {} written, {} rejected{}",
                 claimed.chunk,
@@ -110,7 +111,7 @@ fn done(folder: &Path, claimed: Claimed, Spent { seconds, usd }: Spent) -> Resul
         failed,
         seconds,
         usd,
-        worker: worker_name(),
         at_unix_s,
+        ..Done::default()
     })
 }

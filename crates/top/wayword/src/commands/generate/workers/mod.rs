@@ -24,7 +24,7 @@ use board::Counter;
 pub(crate) use board::Way;
 use std::path::Path;
 use told::{Planned, Worked};
-use wayword_queue::{Finished, work};
+use wayword_queue::{Finished, work, worker_name};
 
 /// Why a worker stops before nothing is left.
 pub(super) struct Why {
@@ -77,16 +77,17 @@ fn make_chunks(
     asked: &AskedWorkers,
     output: &Output,
 ) -> Result<Worked, Error> {
-    let counter = Counter::open(out, kept, asked)?;
+    let worker = worker_name();
+    let counter = Counter::open(out, kept, &worker, asked)?;
     let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
     let calls = Calls::open(&job, &kept.run, output)?;
     let lookout = Lookout::of(settings, calls.as_ref(), &plan.styles)?;
     let team = Team::new(settings, calls.as_ref(), plan.platform)?.with(lookout);
     let shop = Workshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let make = |claimed| chunk::make(out, kept, &shop, claimed, output);
+    let make = |claimed| chunk::make(out, kept, &shop, claimed, &worker, output);
     let finished: Finished<Why> = counter.with(|board| work(board, make, interrupted))?;
-    counter.close(out)?;
+    counter.close()?;
     Worked::of(out, kept, finished, calls.as_ref().map(Calls::spent))
 }
 
