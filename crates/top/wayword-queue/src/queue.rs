@@ -1,4 +1,4 @@
-//! Chunks in PostgreSQL: whoever asks gets what is open. The rules are those of [`crate::Row`].
+//! Chunks in PostgreSQL: a worker that asks gets one that is open. The rules are those of [`crate::Row`].
 
 use crate::{Board, Claimed, Done, Left, Plan, QueueError, TRIES, reopen};
 use std::{
@@ -48,8 +48,8 @@ WHERE run = $1 AND state = 'running' AND tries >= $2 AND pg_postmaster_start_tim
     SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
 )";
 
-/// Gives the first chunk that is open, or whose worker is gone. Nobody is gone before the server has been up for that long: while
-/// it was away, nobody could give a sign of life. Of two that ask at once each gets another one.
+/// Gives the first chunk that is open, or whose worker is gone. No worker counts as gone before the server has been up for
+/// that long: while it was away, none could give a sign of life. Of two that ask at once each gets another one.
 const CLAIM: &str = "
 WITH next AS (
     SELECT c.chunk FROM wayword_queue.chunks AS c
@@ -116,7 +116,7 @@ pub struct Worker {
 /// What a queue knows of a run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Seen {
-    /// Chunks that nobody has.
+    /// Chunks that no worker has.
     pub open: usize,
     /// Chunks that workers have.
     pub running: usize,

@@ -185,6 +185,18 @@ fn borrowed(flags: &[String]) -> Vec<&str> {
     flags.iter().map(String::as_str).collect()
 }
 
+/// Puts together what one worker made and what the killed ones made, and asserts that these are the same files.
+fn merge_to_the_same(whole: &Stage, killed: &Stage) {
+    let merged = |stage: &Stage, out: &str| {
+        assert_eq!(stage.building.wayword(&["runs", "merge", out]).code, Some(0));
+        let mut files = results(&stage.building.path(out));
+        // The addresses of the two providers differ.
+        files.remove(Path::new("config.toml"));
+        files
+    };
+    assert!(merged(whole, "one") == merged(killed, "big"), "the results differ");
+}
+
 /// Most requests that a kill can find in flight.
 const IN_FLIGHT: u64 = 16;
 
@@ -202,17 +214,8 @@ fn shards_with_models_that_are_killed_pay_for_each_call_once() {
         with_models(&killed, "big", &borrowed(part)).spawn().unwrap()
     };
     kill_and_go_on(&parts, kills, start);
-    for (stage, out) in [(&whole, "one"), (&killed, "big")] {
-        assert_eq!(stage.building.wayword(&["runs", "merge", out]).code, Some(0));
-    }
+    merge_to_the_same(&whole, &killed);
     assert!(whole.building.path("one/instructions.jsonl").metadata().unwrap().len() > 0);
-    let of = |stage: &Stage, out: &str| results(&stage.building.path(out));
-    let (mut one, mut big) = (of(&whole, "one"), of(&killed, "big"));
-    // The addresses of the two providers differ.
-    for files in [&mut one, &mut big] {
-        files.remove(Path::new("config.toml"));
-    }
-    assert!(one == big, "the results differ");
     let log = killed.provider.log();
     let again = log.answered - log.distinct_answered();
     // Two chunks that ask the same pay for it twice; a kill adds what was in flight.
@@ -255,15 +258,7 @@ mod by_queue {
             (&status["open"], &status["running"], &status["dead"]),
             (&0.into(), &0.into(), &serde_json::json!({}))
         );
-        for (stage, out) in [(&whole, "one"), (&killed, "big")] {
-            assert_eq!(stage.building.wayword(&["runs", "merge", out]).code, Some(0));
-        }
-        let of = |stage: &Stage, out: &str| results(&stage.building.path(out));
-        let (mut one, mut big) = (of(&whole, "one"), of(&killed, "big"));
-        for files in [&mut one, &mut big] {
-            files.remove(Path::new("config.toml"));
-        }
-        assert!(one == big, "the results differ");
+        merge_to_the_same(&whole, &killed);
         let log = killed.provider.log();
         assert_eq!(log.distinct_answered(), whole.provider.log().distinct_answered());
         assert_eq!(whole.provider.log().answered, whole.provider.log().distinct_answered(), "nothing is asked twice");

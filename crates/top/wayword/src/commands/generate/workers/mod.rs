@@ -57,7 +57,8 @@ pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, output: &Output) 
         refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
         planned::put(out, &plan, &settings, asked)?;
     }
-    let kept = wayword_queue::Plan::of(out)?;
+    // Another worker may have written the plan meanwhile: what the folder has counts.
+    let kept = kept.map_or_else(|| wayword_queue::Plan::of(out), Ok)?;
     planned::agree(out, &kept, &plan, &settings, asked)?;
     if asked.plan {
         let told = Planned::of(out, &kept);
