@@ -48,16 +48,21 @@ WHERE run = $1 AND state = 'running' AND tries >= $2 AND pg_postmaster_start_tim
     SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
 )";
 
-/// Gives the first chunk that is open, or whose worker is gone. No worker counts as gone before the server has been up for
-/// that long: while it was away, none could give a sign of life. Of two that ask at once each gets another one.
+/// Gives a chunk whose worker is gone, or else the first one that is open. No worker counts as gone before the server has
+/// been up for that long: while it was away, none could give a sign of life. Of two that ask at once each gets another one.
+/// The two kinds are asked for apart, because each has an index that stays small: the finished chunks are never passed.
 const CLAIM: &str = "
-WITH next AS (
+WITH lost AS (
     SELECT c.chunk FROM wayword_queue.chunks AS c
-    WHERE c.run = $1 AND (c.state = 'open' OR (c.state = 'running' AND c.tries < $4 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
+    WHERE c.run = $1 AND c.state = 'running' AND c.tries < $4 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
         SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
-    )))
+    )
     ORDER BY c.chunk LIMIT 1 FOR UPDATE SKIP LOCKED
-)
+), first AS (
+    SELECT c.chunk FROM wayword_queue.chunks AS c
+    WHERE c.run = $1 AND c.state = 'open' AND NOT EXISTS (SELECT 1 FROM lost)
+    ORDER BY c.chunk LIMIT 1 FOR UPDATE SKIP LOCKED
+), next AS (SELECT chunk FROM lost UNION ALL SELECT chunk FROM first)
 UPDATE wayword_queue.chunks AS c SET state = 'running', epoch = c.epoch + 1, tries = c.tries + 1, worker = $2, since = now()
 FROM next WHERE c.run = $1 AND c.chunk = next.chunk RETURNING c.chunk, c.epoch";
 

@@ -7,6 +7,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 use std::{
+    cell::Cell,
     fmt, fs,
     path::{Path, PathBuf},
     str::FromStr,
@@ -80,17 +81,41 @@ pub struct Shard<'a> {
     plan: &'a Plan,
     part: Part,
     heart: &'a Heart,
+    /// Every chunk of the part before this one is over, as far as is known.
+    from: Cell<usize>,
 }
 
 impl<'a> Shard<'a> {
     /// The part of the worker whose heart beats for it.
     #[must_use]
     pub fn new(folder: &'a Path, plan: &'a Plan, part: Part, heart: &'a Heart) -> Self {
-        Self { folder, plan, part, heart }
+        Self { folder, plan, part, heart, from: Cell::new(0) }
     }
 
     fn is_over(&self, chunk: usize) -> bool {
         done_path(self.folder, chunk).exists() || dead_path(self.folder, chunk).exists()
+    }
+
+    /// Begins the first chunk from a number on that is not over.
+    fn begin_from(&self, from: usize) -> Result<Option<Claimed>, QueueError> {
+        for chunk in self.part.chunks(self.plan).skip_while(|chunk| *chunk < from) {
+            if self.is_over(chunk) {
+                continue;
+            }
+            let results = chunk_folder(self.folder, chunk, 0);
+            fs::create_dir_all(&results).map_err(QueueError::io(&results, "make the folder"))?;
+            let before: Tries = from_file(&tries_path(self.folder, chunk))?.unwrap_or_default();
+            let bytes = bytes_in(&results);
+            let tries = if bytes > before.bytes { 0 } else { before.tries };
+            if tries >= TRIES {
+                self.dies(chunk, &format!("begun {TRIES} times without a result: its worker ended each time"))?;
+                continue;
+            }
+            self.count(chunk, Tries { tries: tries + 1, bytes })?;
+            self.from.set(chunk);
+            return Ok(Some(Claimed { chunk, epoch: 0 }));
+        }
+        Ok(None)
     }
 
     fn count(&self, chunk: usize, tries: Tries) -> Result<(), QueueError> {
@@ -107,23 +132,12 @@ impl<'a> Shard<'a> {
 impl Board for Shard<'_> {
     fn take(&self) -> Result<Option<Claimed>, QueueError> {
         self.heart.check()?;
-        for chunk in self.part.chunks(self.plan) {
-            if self.is_over(chunk) {
-                continue;
-            }
-            let results = chunk_folder(self.folder, chunk, 0);
-            fs::create_dir_all(&results).map_err(QueueError::io(&results, "make the folder"))?;
-            let before: Tries = from_file(&tries_path(self.folder, chunk))?.unwrap_or_default();
-            let bytes = bytes_in(&results);
-            let tries = if bytes > before.bytes { 0 } else { before.tries };
-            if tries >= TRIES {
-                self.dies(chunk, &format!("begun {TRIES} times without a result: its worker ended each time"))?;
-                continue;
-            }
-            self.count(chunk, Tries { tries: tries + 1, bytes })?;
-            return Ok(Some(Claimed { chunk, epoch: 0 }));
+        // A look at a mark costs a question to a network file system, so those before the last chunk are not looked at again
+        // until the end: they may have been opened anew meanwhile.
+        match self.begin_from(self.from.get())? {
+            None if self.from.get() > 0 => self.begin_from(0),
+            begun => Ok(begun),
         }
-        Ok(None)
     }
 
     fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
@@ -184,6 +198,8 @@ mod tests {
         assert_eq!(shard.take().unwrap().unwrap().chunk, 1, "the rest goes on");
         assert!(dead_of(folder.path(), 0).unwrap().unwrap().contains("3 times"));
         assert_eq!(reopen(folder.path(), &plan, "3 times").unwrap(), [0]);
+        assert_eq!(shard.take().unwrap().unwrap().chunk, 1, "what is left comes first");
+        shard.complete(Claimed { chunk: 1, epoch: 0 }, &Done { chunk: 1, ..Done::default() }).unwrap();
         // A chunk that gets on is not given up, however often its worker is killed.
         for number in 0..2 * TRIES {
             assert_eq!(shard.take().unwrap().unwrap().chunk, 0);
@@ -192,6 +208,7 @@ mod tests {
         let done = Done { chunk: 0, ..Done::default() };
         assert!(shard.complete(Claimed { chunk: 0, epoch: 0 }, &done).unwrap());
         assert!(!shard.complete(Claimed { chunk: 0, epoch: 0 }, &done).unwrap());
-        assert_eq!(shard.left().unwrap().open, 1);
+        assert!(shard.take().unwrap().is_none());
+        assert_eq!(shard.left().unwrap().open, 0);
     }
 }
