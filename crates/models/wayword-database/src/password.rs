@@ -3,6 +3,8 @@
 
 use crate::DatabaseError;
 use postgres::{Config, config::Host};
+#[cfg(unix)]
+use std::os::unix::fs::MetadataExt;
 use std::{
     env, fs,
     path::{Path, PathBuf},
@@ -35,11 +37,19 @@ fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError
         return Err(failed("this is no password file".to_owned(), "check PGPASSFILE"));
     }
     #[cfg(unix)]
-    if std::os::unix::fs::PermissionsExt::mode(&about.permissions()) & 0o077 != 0 {
+    if is_open(MetadataExt::mode(&about), MetadataExt::uid(&about)) {
         return Err(failed("others may read this password file".to_owned(), "chmod 600 the file"));
     }
     let text = fs::read_to_string(path).map_err(|error| failed(error.to_string(), "check PGPASSFILE"))?;
     Ok(text.lines().find_map(|line| password_of(line, &wanted(config))))
+}
+
+/// Whether others than the user may read or write a file of this mode and owner. Kubernetes gives a secret's file to root and lets
+/// the group of the pod read it; there the group is the worker alone.
+#[cfg(unix)]
+fn is_open(mode: u32, owner: u32) -> bool {
+    let not_allowed = if owner == 0 { 0o037 } else { 0o077 };
+    mode & not_allowed != 0
 }
 
 /// Host, port, database and user, as a password file names them.
@@ -93,6 +103,13 @@ mod tests {
         assert_eq!(of("other:5432:db:me:x"), None);
         assert_eq!(of("# far:5432:db:me:x"), None);
         assert_eq!(of("far:5432:db"), None);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_group_may_read_roots_file_alone() {
+        assert!(!is_open(0o100_440, 0) && !is_open(0o100_400, 1000));
+        assert!(is_open(0o100_440, 1000) && is_open(0o100_460, 0) && is_open(0o100_444, 0));
     }
 
     #[cfg(unix)]

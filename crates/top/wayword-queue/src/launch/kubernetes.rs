@@ -2,11 +2,10 @@
 //!
 //! It needs Kubernetes 1.33 or later, in which limits by index and policies of failure are stable.
 //!
-//! Secrets are named: an environment variable out of a secret ([`SecretEnv`]) is what `--password-env` reads. A password file
-//! ([`SecretFile`]) is harder, because Kubernetes gives the files of a secret to root: a worker that is not root reads them only by its
-//! group, and Kubernetes then lets the group read them, whatever their mode says (0440 for 0400). **Wayword itself
-//! refuses a password file that a group may read, and so does libpq: for them, give [`SecretEnv`] and `--password-env`.** The file is
-//! for images whose program takes it, or copies it first.
+//! Secrets are named: an environment variable out of a secret ([`SecretEnv`]) is what `--password-env` reads, and a password file
+//! ([`SecretFile`]) is what PGPASSFILE names. Kubernetes gives the files of a secret to root: a worker that is not root reads them by
+//! its group, and Kubernetes then lets the group read them, whatever their mode says (0440 for 0400). Wayword takes such a file;
+//! libpq refuses it.
 
 use super::{
     LaunchError, Worker,
@@ -51,7 +50,7 @@ pub struct KubernetesJob {
     pub shared: Option<SharedFolder>,
     /// Environment variables that come from secrets.
     pub secrets: Vec<SecretEnv>,
-    /// The password file of PostgreSQL; `PGPASSFILE` names it. Wayword refuses it as Kubernetes mounts it: see the module.
+    /// The password file of PostgreSQL; `PGPASSFILE` names it.
     pub pass_file: Option<SecretFile>,
 }
 
