@@ -109,21 +109,20 @@ impl Ledger {
     /// When the database cannot be used, or its tables are missing and this role may not make them.
     #[cfg(feature = "postgres")]
     pub fn postgres(database: &wayword_database::Database) -> Result<Self, LedgerError> {
-        Ok(Self::of(Postgres::open(database, Pulse::USUAL)?, None))
+        Self::postgres_with_lease(database, Pulse::LEASE)
     }
 
-    /// The same for tests, which do not wait a minute for a program that has ended.
+    /// The same, where the calls of a program that gives no sign of life for as long as `lease` are free for others. All
+    /// programs have to give the same time; [`Ledger::postgres`] has a minute.
     ///
     /// # Errors
     /// As [`Ledger::postgres`].
     #[cfg(feature = "postgres")]
-    #[doc(hidden)]
-    pub fn postgres_with_pulse(
+    pub fn postgres_with_lease(
         database: &wayword_database::Database,
-        beat: std::time::Duration,
-        gone: std::time::Duration,
+        lease: std::time::Duration,
     ) -> Result<Self, LedgerError> {
-        Ok(Self::of(Postgres::open(database, Pulse { beat, gone })?, None))
+        Ok(Self::of(Postgres::open(database, Pulse::of(lease))?, None))
     }
 
     fn of(store: impl Store + 'static, recording: Option<PathBuf>) -> Self {

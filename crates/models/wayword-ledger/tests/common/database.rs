@@ -8,7 +8,6 @@ use wayword_testkit::Postgres;
 
 /// A program without a sign of life for this long has ended. The tests do not wait a minute.
 const GONE: Duration = Duration::from_millis(1500);
-const BEAT: Duration = Duration::from_millis(200);
 
 /// A new database; `None` where PostgreSQL is not installed.
 pub fn new(test: &str) -> Option<Store> {
@@ -29,7 +28,7 @@ pub fn named(url: &str) -> Database {
 }
 
 pub fn open(url: &str) -> Ledger {
-    Ledger::postgres_with_pulse(&named(url), BEAT, GONE).unwrap()
+    Ledger::postgres_with_lease(&named(url), GONE).unwrap()
 }
 
 /// A connection past the ledger.

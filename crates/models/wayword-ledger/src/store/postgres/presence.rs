@@ -1,4 +1,4 @@
-//! Signs of life of the programs that use a ledger. A program without one for a minute, by the database's clock, has
+//! Signs of life of the programs that use a ledger. A program without one for the time of a lease, by the database's clock, has
 //! ended, or cannot reach the database: its calls are free for others.
 
 use super::link::Link;
@@ -18,7 +18,13 @@ pub(crate) struct Pulse {
 }
 
 impl Pulse {
-    pub(crate) const USUAL: Self = Self { beat: Duration::from_secs(10), gone: Duration::from_secs(60) };
+    /// How long a sign of life counts, unless the program says otherwise.
+    pub(crate) const LEASE: Duration = Duration::from_secs(60);
+
+    /// Six signs of life in the time for which one counts.
+    pub(crate) fn of(lease: Duration) -> Self {
+        Self { beat: lease / 6, gone: lease }
+    }
 }
 
 /// A sign of life need not survive a crash of the server.
