@@ -1,8 +1,11 @@
 //! The flags of a run that many workers make.
 
 use clap::Args;
-use std::time::Duration;
+use std::{num::NonZeroUsize, time::Duration};
 use wayword_queue::Part;
+
+/// Items in a chunk, unless the user says otherwise.
+const CHUNK: usize = 64;
 
 /// Which part of a run this worker makes.
 #[derive(Debug, Clone, Default, Args)]
@@ -14,7 +17,7 @@ pub struct AskedWorkers {
     pub plan: bool,
     /// Items in a chunk, which one worker makes as a whole. [default: 64]
     #[arg(long, value_name = "N")]
-    pub chunk: Option<usize>,
+    pub chunk: Option<NonZeroUsize>,
     /// Make this part of the run: K from 0 to N-1. Needs a folder that all workers share, and nothing else. Each chunk keeps its
     /// own calls, and --max-usd, --max-calls and the rates are divided by N.
     #[arg(long, value_name = "K/N", conflicts_with = "queue")]
@@ -37,6 +40,12 @@ impl AskedWorkers {
     #[must_use]
     pub fn is_asked(&self) -> bool {
         self.plan || self.shard.is_some() || self.queue.is_some()
+    }
+
+    /// Items in a chunk.
+    #[must_use]
+    pub fn chunk(&self) -> usize {
+        self.chunk.map_or(CHUNK, NonZeroUsize::get)
     }
 
     /// How long a sign of life counts.

@@ -71,6 +71,11 @@ impl Bill {
         self.0.iter().map(|asked| asked.calls).sum()
     }
 
+    /// US dollars of all models; `None` if a price is not known.
+    pub(crate) fn usd(&self) -> Option<f64> {
+        self.0.iter().map(|asked| asked.usd).sum()
+    }
+
     /// Whether no model would be asked.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -123,8 +128,7 @@ impl fmt::Display for Bill {
                 _ => writeln!(f, ", price not known (see --prices)")?,
             }
         }
-        let known: Option<f64> = self.0.iter().map(|asked| asked.usd).sum();
-        match known {
+        match self.usd() {
             Some(usd) => write!(f, "in all: about ${usd:.2}"),
             None => write!(f, "in all: not known, because a price is missing"),
         }

@@ -3,6 +3,7 @@
 use super::{
     Plan,
     bill::{Bill, Load, picture_tokens},
+    seen::{Different, Seen},
 };
 use crate::{
     count::count,
@@ -16,12 +17,11 @@ use crate::{
     team::prompts,
 };
 use serde::Serialize;
-use std::{collections::BTreeSet, fmt};
-use wayword_core::{Exchange, Gaze, Observation, Path};
+use std::fmt;
+use wayword_core::{Exchange, Observation, Path};
 use wayword_synthesis::{
-    observe::gazes,
     prompts::{Manner, PromptError, Prompts},
-    walk::{FrameSelection, Walk},
+    walk::Walk,
     writer::Brief,
 };
 
@@ -42,6 +42,23 @@ pub struct Estimate {
     detector: Option<Looked>,
     /// One per model.
     models: Bill,
+    /// What shards take more than a queue.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shards: Option<Shards>,
+}
+
+/// What workers take more by shards than by a queue: they share calls within a chunk alone.
+#[derive(Debug, Serialize)]
+struct Shards {
+    /// Items in a chunk.
+    chunk: usize,
+    /// Different views of each chunk, of all chunks together.
+    views: usize,
+    /// Calls above those of a queue.
+    calls: u64,
+    /// US dollars above those of a queue; absent if a price is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    usd: Option<f64>,
 }
 
 /// What a detector would look for.
@@ -71,8 +88,10 @@ const CAPTION_TOKENS: u64 = 60;
 const CONDENSED_TOKENS: u64 = 25;
 const INSTRUCTION_TOKENS: u64 = 60;
 impl Estimate {
-    pub(super) fn of(plan: &Plan<'_>) -> Result<Self, Error> {
-        Self::of_items(plan, plan.items.iter())
+    /// What the whole run takes. With the number of items in a chunk also what shards take more than a queue, because they share
+    /// calls within a chunk alone.
+    pub(super) fn of(plan: &Plan<'_>, chunk: Option<usize>) -> Result<Self, Error> {
+        Self::of_items(plan, plan.items.iter(), chunk)
     }
 
     /// All calls, with those of a detector for each view.
@@ -81,58 +100,46 @@ impl Estimate {
     }
 
     /// The same for some of the items.
-    pub(super) fn of_items<'i>(plan: &Plan<'_>, items: impl Iterator<Item = &'i Item>) -> Result<Self, Error> {
+    pub(super) fn of_items<'i>(
+        plan: &Plan<'_>,
+        items: impl Iterator<Item = &'i Item>,
+        chunk: Option<usize>,
+    ) -> Result<Self, Error> {
         let settings = &plan.job.settings;
         let prompts = prompts(settings)?;
         let mut estimate = Self { questions: questions(settings), ..Self::default() };
-        let (mut views, mut panoramas, mut writing) = (BTreeSet::new(), BTreeSet::new(), Load::default());
-        for item in items {
+        let (mut all, mut here, mut apart) = (Seen::default(), Seen::default(), Different::default());
+        let mut writing = Load::default();
+        for (number, item) in items.enumerate() {
+            if chunk.is_some_and(|chunk| number.is_multiple_of(chunk)) {
+                apart += std::mem::take(&mut here).different();
+            }
             let world = Remembering::new(plan.platform);
             // An item without a path fails in the run, and asks nothing of models.
             let Ok(path) = pipeline::path(item, settings, &world) else { continue };
             estimate.items += 1;
             estimate.frames += path.frames.len();
-            for frame in &path.frames {
-                let place = (path.scene.clone(), frame.place());
-                views.extend(gazes(frame, settings.frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
-                panoramas.insert(place);
+            all.add(&path, settings.frames);
+            if chunk.is_some() {
+                here.add(&path, settings.frames);
             }
             writing.add(write_load(&prompts, settings, &plan.styles, &path)?);
         }
-        estimate.views = views.len();
-        let panoramas = if settings.frames == FrameSelection::Panoramic { panoramas.len() as u64 } else { 0 };
+        apart += here.different();
+        let different = all.different();
+        estimate.views = different.views as usize;
         if let Some(model) = &settings.roles.detector {
             let phrases = nouns(settings, &plan.styles)?.len();
             estimate.detector = Some(Looked { model: model.clone(), phrases });
         }
         let talk = Talk::of(&prompts, settings)?;
-        let roles = &settings.roles;
-        let dialogue = settings.has_dialogue();
-        let open = if settings.perception == Perception::FollowUp {
-            views.len() as u64 * OPEN_PER_HUNDRED_VIEWS / 100
-        } else {
-            0
-        };
-        let seeing = talk.seeing.times(estimate.views as u64).plus(talk.settling.times(open));
-        let summing = talk.summing.times(estimate.views as u64).plus(talk.condensing.times(panoramas));
-        for (role, model, load, takes_part) in [
-            ("asks", &roles.ask, talk.asking.times(estimate.views as u64), dialogue),
-            ("sees", &roles.see, seeing, true),
-            ("summarises", &roles.summarise, summing, dialogue),
-            ("writes", &roles.write, writing, true),
-        ] {
-            if is_model(model) && takes_part {
-                estimate.models.add(model, role, load);
-            }
-        }
-        estimate.models.price(&plan.models);
+        estimate.models = talk.bill(plan, different, writing);
+        estimate.shards = chunk.filter(|_| !estimate.models.is_empty()).map(|chunk| {
+            let more = talk.bill(plan, apart - different, Load::default());
+            Shards { chunk, views: apart.views as usize, calls: more.calls(), usd: more.usd() }
+        });
         Ok(estimate)
     }
-}
-
-/// Headings that differ only by rounding look at the same thing.
-fn micro_rad(gaze: Gaze) -> u64 {
-    (gaze.heading.rad() * 1e6).round() as u64
 }
 
 /// Questions per view at most, fixed ones among them.
@@ -200,6 +207,29 @@ impl Talk {
         condensing.call(&prompts.condense(&around, 20, &[])?, CONDENSED_TOKENS);
         Ok(Self { asking, seeing, settling, summing, condensing })
     }
+
+    /// What each model is asked about so many views, and for the texts.
+    fn bill(&self, plan: &Plan<'_>, Different { views, panoramas }: Different, writing: Load) -> Bill {
+        let settings = &plan.job.settings;
+        let roles = &settings.roles;
+        let dialogue = settings.has_dialogue();
+        let open = if settings.perception == Perception::FollowUp { views * OPEN_PER_HUNDRED_VIEWS / 100 } else { 0 };
+        let seeing = self.seeing.times(views).plus(self.settling.times(open));
+        let summing = self.summing.times(views).plus(self.condensing.times(panoramas));
+        let mut bill = Bill::default();
+        for (role, model, load, takes_part) in [
+            ("asks", &roles.ask, self.asking.times(views), dialogue),
+            ("sees", &roles.see, seeing, true),
+            ("summarises", &roles.summarise, summing, dialogue),
+            ("writes", &roles.write, writing, true),
+        ] {
+            if is_model(model) && takes_part {
+                bill.add(model, role, load);
+            }
+        }
+        bill.price(&plan.models);
+        bill
+    }
 }
 
 /// Writing each text once; repairs come on top, and their number is not known before.
@@ -240,6 +270,13 @@ impl fmt::Display for Estimate {
             f,
             "estimate, if dialogues end where they usually do, nothing is asked or written twice, and the ledger is empty:"
         )?;
-        self.models.fmt(f)
+        self.models.fmt(f)?;
+        let Some(Shards { chunk, views, calls, usd }) = &self.shards else { return Ok(()) };
+        let (views, calls) = (count(*views, "view"), count(*calls, "call"));
+        write!(f, "\nwith --shard calls are shared within a chunk of {chunk} alone: {views} to caption, {calls}")?;
+        match usd {
+            Some(usd) => write!(f, " and ${usd:.2} more than with --queue"),
+            None => write!(f, " more than with --queue"),
+        }
     }
 }

@@ -4,6 +4,7 @@
 mod bill;
 mod estimate;
 mod inputs;
+mod seen;
 
 use crate::{
     calls::Calls,
@@ -75,16 +76,18 @@ impl<'a> Plan<'a> {
     /// When a prompt cannot be used.
     pub fn calls_per_item(&self, items: &[&Item], lookout: Option<&Lookout>) -> Result<f64, Error> {
         let few = &items[..items.len().min(FEW)];
-        let calls = Estimate::of_items(self, few.iter().copied())?.calls(lookout.map_or(0, Lookout::calls_per_view));
+        let calls =
+            Estimate::of_items(self, few.iter().copied(), None)?.calls(lookout.map_or(0, Lookout::calls_per_view));
         Ok(calls as f64 / few.len().max(1) as f64)
     }
 
-    /// What the run would ask of models, and what that would cost.
+    /// What the run would ask of models, and what that would cost. With the number of items in a chunk also what shards would take
+    /// more than a queue.
     ///
     /// # Errors
     /// When a prompt cannot be used.
-    pub fn estimate(&self) -> Result<Estimate, Error> {
-        Estimate::of(self)
+    pub fn estimate(&self, chunk: Option<usize>) -> Result<Estimate, Error> {
+        Estimate::of(self, chunk)
     }
 }
 

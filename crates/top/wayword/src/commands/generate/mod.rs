@@ -37,7 +37,8 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
         Calls::rehearse(&job)?;
         let platform = platforms::open(&job.settings)?;
         let job = Job { settings: usable::settled(&job.settings, platform.as_ref(), output)?, ..job };
-        let estimate = Plan::writing(&job, platform.as_ref())?.estimate()?;
+        let chunk = args.workers.is_asked().then(|| args.workers.chunk());
+        let estimate = Plan::writing(&job, platform.as_ref())?.estimate(chunk)?;
         output.data(&estimate, &estimate);
         return Ok(Exit::Done);
     }

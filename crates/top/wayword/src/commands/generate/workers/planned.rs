@@ -11,9 +11,6 @@ use crate::{
 };
 use std::{collections::BTreeSet, fs, path::Path};
 
-/// Items in a chunk, unless the user says otherwise.
-const CHUNK: usize = 64;
-
 /// Refuses a folder that holds a run of one machine.
 pub(super) fn refuse_other_folder(out: &Path) -> Result<(), Error> {
     crate::run::refuse_file(out)?;
@@ -37,15 +34,12 @@ pub(crate) fn settings_of(out: &Path, plan: &wayword_queue::Plan) -> Result<Sett
 /// Writes the plan, unless another worker has just done so.
 pub(super) fn put(out: &Path, plan: &Plan<'_>, settings: &Settings, asked: &AskedWorkers) -> Result<(), Error> {
     fs::create_dir_all(out.join("chunks")).map_err(Error::io(out, "make the run folder"))?;
-    let chunk = asked.chunk.unwrap_or(CHUNK);
-    if chunk == 0 {
-        return Err(Error::usage("--chunk 0 holds no item", "give at least 1, or leave the flag out for 64"));
-    }
+    let chunk = asked.chunk();
     let items: Vec<String> = plan.items.iter().map(Item::id).collect();
     let mut new = wayword_queue::Plan::new(fresh_id("run"), chunk, config_text(settings)?, items);
     let scenes: BTreeSet<_> = plan.items.iter().map(Item::scene).collect();
     new.data = hashes(plan.platform, scenes)?;
-    new.estimate = serde_json::to_value(plan.estimate()?).unwrap_or_default();
+    new.estimate = serde_json::to_value(plan.estimate(Some(chunk))?).unwrap_or_default();
     new.put(out)?;
     Ok(())
 }
@@ -60,7 +54,7 @@ pub(super) fn agree(
 ) -> Result<(), Error> {
     let before = settings_of(out, kept)?;
     let mut differs: Vec<String> = differing(&before, settings).into_iter().collect();
-    if asked.chunk.is_some_and(|chunk| chunk != kept.chunk) {
+    if asked.chunk.is_some_and(|chunk| chunk.get() != kept.chunk) {
         differs.push(format!("chunk ({} in the plan)", kept.chunk));
     }
     if differs.is_empty() && !plan.items.iter().map(Item::id).eq(kept.items.iter().cloned()) {

@@ -1,0 +1,63 @@
+//! The different views of paths: each is described once by those who share their calls.
+
+use std::{
+    collections::BTreeSet,
+    ops::{AddAssign, Sub},
+};
+use wayword_core::{Gaze, Path, SceneId, ViewpointId};
+use wayword_synthesis::{observe::gazes, walk::FrameSelection};
+
+/// A place in a scene.
+type Place = (SceneId, ([u64; 3], Option<ViewpointId>));
+
+/// The views of some paths.
+#[derive(Default)]
+pub(super) struct Seen {
+    views: BTreeSet<(Place, i64)>,
+    panoramas: BTreeSet<Place>,
+}
+
+/// How many views and panoramas differ.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Different {
+    pub(super) views: u64,
+    pub(super) panoramas: u64,
+}
+
+impl Seen {
+    /// Adds what is seen along a path.
+    pub(super) fn add(&mut self, path: &Path, frames: FrameSelection) {
+        for frame in &path.frames {
+            let place = (path.scene.clone(), frame.place());
+            self.views.extend(gazes(frame, frames).iter().map(|gaze| (place.clone(), micro_rad(*gaze))));
+            if frames == FrameSelection::Panoramic {
+                self.panoramas.insert(place);
+            }
+        }
+    }
+
+    /// How many there are.
+    pub(super) fn different(&self) -> Different {
+        Different { views: self.views.len() as u64, panoramas: self.panoramas.len() as u64 }
+    }
+}
+
+impl AddAssign for Different {
+    fn add_assign(&mut self, other: Self) {
+        self.views += other.views;
+        self.panoramas += other.panoramas;
+    }
+}
+
+impl Sub for Different {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { views: self.views - other.views, panoramas: self.panoramas - other.panoramas }
+    }
+}
+
+/// Headings that differ only by rounding look at the same thing.
+fn micro_rad(gaze: Gaze) -> i64 {
+    (gaze.heading.rad() * 1e6).round() as i64
+}
