@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The folder of chunks and their marks in a run folder.
-const CHUNKS: &str = "chunks";
+pub(crate) const CHUNKS: &str = "chunks";
 /// Largest mark that is read, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 

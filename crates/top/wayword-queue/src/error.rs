@@ -53,6 +53,10 @@ pub enum QueueError {
     #[cfg(feature = "postgres")]
     #[error(transparent)]
     Database(#[from] wayword_database::DatabaseError),
+    /// The object store cannot be used.
+    #[cfg(feature = "cloud")]
+    #[error(transparent)]
+    Cloud(#[from] crate::cloud::CloudError),
 }
 
 impl QueueError {
@@ -73,6 +77,8 @@ impl QueueError {
             }
             #[cfg(feature = "postgres")]
             Self::Database(error) => error.is_lost(),
+            #[cfg(feature = "cloud")]
+            Self::Cloud(error) => error.is_lost(),
             _ => false,
         }
     }

@@ -27,7 +27,7 @@ pub use done::{Done, chunk_folder, dead_of, dead_path, done_of, done_path, reope
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
 pub use heartbeat::{Alive, Beat, FRESH, Heart, beats, worker_name};
-pub use plan::{FILE as PLAN, Plan};
+pub use plan::{FILE as PLAN, Plan, WAY};
 pub use protocol::{Row, State, TRIES};
 #[cfg(feature = "postgres")]
 pub use queue::{Queue, Seen, TABLES, Worker};

@@ -7,7 +7,9 @@ use std::{collections::BTreeMap, fs, io::ErrorKind, ops::Range, path::Path};
 
 /// The plan's file in a run folder.
 pub const FILE: &str = "plan.json";
-/// The format of the file.
+/// The file that says whether chunks are handed out by shards or by a queue.
+pub const WAY: &str = "workers.json";
+/// The format of the plan.
 const FORMAT: u32 = 1;
 /// Largest plan that is read, bytes: ten million items.
 const MOST_BYTES: u64 = 1 << 30;

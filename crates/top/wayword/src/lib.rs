@@ -38,6 +38,7 @@ pub mod report;
 pub mod run;
 pub mod settings;
 mod similar;
+mod stores;
 pub mod styles;
 pub mod team;
 mod terms;

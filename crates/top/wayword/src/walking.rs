@@ -1,6 +1,6 @@
 //! Scenes in which an agent can take single steps: generated houses and Habitat's scenes, each with its navmesh.
 
-use crate::{error::Error, platforms, settings::Settings};
+use crate::{error::Error, platforms, settings::Settings, stores};
 use std::sync::Arc;
 use wayword_core::{DVec3, Frame, Gaze, Heading, Image, Path, Platform, PlatformError, Pose, Recent, SceneId};
 use wayword_habitat::{
@@ -47,7 +47,11 @@ impl Scenes {
                     ..HabitatOptions::default()
                 };
                 let data = settings.data.as_deref().ok_or_else(|| platforms::no_data("habitat"))?;
-                Kind::Habitat(Box::new(HabitatPlatform::open(data, options, Arc::new(crate::output::pass_on))?))
+                Kind::Habitat(Box::new(HabitatPlatform::open(
+                    &stores::local(data)?,
+                    options,
+                    Arc::new(crate::output::pass_on),
+                )?))
             }
             other => {
                 let problem = format!("platform {other} has no ground on which single steps can be taken");

@@ -96,6 +96,20 @@ fn a_plan_says_what_a_run_takes_and_a_worker_with_something_else_is_told_what() 
     assert!(building.wayword(&["runs", "status", "nowhere"]).refused().contains("no plan"));
 }
 
+#[cfg(not(feature = "cloud"))]
+#[test]
+fn a_build_without_object_stores_says_so() {
+    let building = Building::new();
+    let refused = building.generate("s3://bucket/big", &RUN[..4]);
+    assert!(refused.refused().contains("--shard"), "{refused:?}");
+    for refused in
+        [worker(&building, "s3://bucket/big", "0/1"), building.wayword(&["runs", "status", "s3://bucket/big"])]
+    {
+        assert!(refused.refused().contains("--features full,cloud"), "{refused:?}");
+    }
+    assert!(!building.path("s3:").exists(), "no folder is made");
+}
+
 #[test]
 fn a_second_worker_on_a_shard_is_refused_while_the_first_lives() {
     let building = Building::new();
@@ -146,9 +160,16 @@ fn failed_items_are_told_by_reason_and_tried_again() {
 
 /// A worker of a run with models, as a process.
 fn with_models(stage: &Stage, out: &str, part: &[&str]) -> Command {
+    let mut args = vec!["--paths", "24", "--chunk", "4"];
+    args.extend(part);
+    asking_models(stage, out, &args)
+}
+
+/// `generate` with models, as a process.
+fn asking_models(stage: &Stage, out: &str, part: &[&str]) -> Command {
     let base = stage.provider.base_url(Dialect::OpenAi);
     let models = ["--llm", "server/words", "--see", "server/eye", "--base-url", &base, "--key-env", KEY_ENV];
-    let rest = ["--paths", "24", "--chunk", "4", "--style", "r2r", "--hops", "3..7", "--evidence", "captions"];
+    let rest = ["--style", "r2r", "--hops", "3..7", "--evidence", "captions"];
     let mut args = vec!["generate", "--platform", "matterport", "--data", "data", "--out", out, "--concurrency", "8"];
     args.extend(models.into_iter().chain(rest).chain(part.iter().copied()));
     let mut command = stage.building.command(&args);
@@ -226,45 +247,11 @@ fn shards_with_models_that_are_killed_pay_for_each_call_once() {
 }
 
 #[cfg(feature = "queue")]
-mod by_queue {
-    use super::*;
-    use wayword_testkit::Postgres;
-
-    /// A server, if it is asked for.
-    fn server(test: &str) -> Option<std::sync::Arc<Postgres>> {
-        if std::env::var_os("WAYWORD_TEST_POSTGRES").is_none() {
-            eprintln!("skipped: {test} needs WAYWORD_TEST_POSTGRES=1 and PostgreSQL's programs");
-            return None;
-        }
-        Some(Postgres::shared().unwrap_or_else(|| panic!("{test}: PostgreSQL's initdb and pg_ctl are not installed")))
-    }
-
-    #[test]
-    fn workers_of_a_queue_that_are_killed_make_what_one_makes_and_share_their_calls() {
-        let Some(server) = server("workers_of_a_queue_that_are_killed_make_what_one_makes_and_share_their_calls")
-        else {
-            return;
-        };
-        let kills = 4;
-        let behaviour = Behaviour { latency: Duration::from_millis(10), ..cast() };
-        let (whole, killed) = (Stage::new(behaviour.clone()), Stage::new(behaviour));
-        let [alone, together] = [(), ()].map(|()| server.new_database());
-        assert_eq!(with_models(&whole, "one", &["--queue", &alone]).status().unwrap().code(), Some(0));
-        let queue = flags(&["--queue", &together, "--lease-s", "1"]);
-        let start = |part: &[String]| with_models(&killed, "big", &borrowed(part)).spawn().unwrap();
-        kill_and_go_on(&[queue.clone(), queue.clone(), queue], kills, start);
-        let status = killed.building.wayword(&["runs", "status", "big", "--json"]).json();
-        assert_eq!(
-            (&status["open"], &status["running"], &status["dead"]),
-            (&0.into(), &0.into(), &serde_json::json!({}))
-        );
-        merge_to_the_same(&whole, &killed);
-        let log = killed.provider.log();
-        assert_eq!(log.distinct_answered(), whole.provider.log().distinct_answered());
-        assert_eq!(whole.provider.log().answered, whole.provider.log().distinct_answered(), "nothing is asked twice");
-        let again = log.answered - log.distinct_answered();
-        eprintln!("{} calls, {again} paid again after {kills} kills", log.answered);
-        assert!(again <= kills as u64 * IN_FLIGHT);
-        holds_no_key(&killed.building.path("big"));
-    }
-}
+#[path = "workers/by_queue.rs"]
+mod by_queue;
+#[cfg(feature = "cloud")]
+#[path = "workers/in_stores.rs"]
+mod in_stores;
+#[cfg(feature = "queue")]
+#[path = "workers/trials.rs"]
+mod trials;

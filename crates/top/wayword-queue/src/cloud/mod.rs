@@ -34,6 +34,7 @@ mod index;
 mod lock;
 mod names;
 mod send;
+mod stored_run;
 mod trouble;
 
 pub use address::is_url;
@@ -41,3 +42,4 @@ pub use bucket::{Bucket, Entry, MOST_OBJECTS};
 pub use error::CloudError;
 pub use fetch::{Fetched, INDEX};
 pub use send::Sent;
+pub use stored_run::{Sending, StoredRun};

@@ -14,9 +14,9 @@ pub enum Keeping {
     /// In a recording in each chunk: for workers that share a folder alone. These are the recordings that a shard has so far; what
     /// they cost counts.
     Chunks(Vec<PathBuf>),
-    /// In a database that all workers share.
+    /// In a database that all workers share, with how long a sign of life of a worker counts.
     #[cfg(feature = "queue")]
-    Database(wayword_database::Database),
+    Database(wayword_database::Database, std::time::Duration),
 }
 
 impl Keeping {
@@ -26,7 +26,7 @@ impl Keeping {
             Self::Machine => Ok(Ledger::check_place(&ledger_path(service)?)?),
             Self::Chunks(_) => Ok(()),
             #[cfg(feature = "queue")]
-            Self::Database(_) => Ok(()),
+            Self::Database(..) => Ok(()),
         }
     }
 
@@ -36,7 +36,7 @@ impl Keeping {
             Self::Machine => Ledger::open(&ledger_path(service)?)?,
             Self::Chunks(recordings) => Ledger::in_chunks(recordings)?,
             #[cfg(feature = "queue")]
-            Self::Database(database) => Ledger::postgres(database)?,
+            Self::Database(database, lease) => Ledger::postgres_with_lease(database, *lease)?,
         })
     }
 }

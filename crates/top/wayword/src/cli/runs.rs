@@ -10,6 +10,7 @@ Examples:
   wayword runs status runs/big --watch
   wayword runs status runs/big --prometheus > /var/lib/node_exporter/wayword.prom
   wayword runs merge runs/big
+  wayword runs merge s3://bucket/big --to runs/big    (needs the feature cloud)
   wayword runs retry runs/big --reason timeout
   wayword runs database wayword_db --sql --role workers | psql wayword_db")]
 pub struct Runs {
@@ -34,7 +35,7 @@ pub enum RunsCommand {
 /// `wayword runs status`.
 #[derive(Debug, Args)]
 pub struct RunsStatus {
-    /// The run folder.
+    /// The run folder, or its address in an object store.
     pub run: PathBuf,
     /// Show it again every few seconds, until nothing is left.
     #[arg(long)]
@@ -50,8 +51,11 @@ pub struct RunsStatus {
 /// `wayword runs merge`.
 #[derive(Debug, Args)]
 pub struct RunsMerge {
-    /// The run folder.
+    /// The run folder, or its address in an object store.
     pub run: PathBuf,
+    /// Fetch a run from an object store into this folder, and merge it there.
+    #[arg(long, value_name = "DIR")]
+    pub to: Option<PathBuf>,
     /// Put together what is finished, although chunks are missing. Merge again later for the whole.
     #[arg(long)]
     pub partial: bool,
@@ -60,7 +64,7 @@ pub struct RunsMerge {
 /// `wayword runs retry`.
 #[derive(Debug, Args)]
 pub struct RunsRetry {
-    /// The run folder.
+    /// The run folder, or its address in an object store.
     pub run: PathBuf,
     /// Words of the reason, as `wayword runs status` shows it.
     #[arg(long, value_name = "WORDS")]

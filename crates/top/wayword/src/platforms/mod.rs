@@ -10,6 +10,7 @@ use crate::{
     output,
     settings::{AskedPlatform, Settings},
     similar::did_you_mean,
+    stores,
 };
 use std::{path::Path, sync::Arc};
 use wayword_core::Platform;
@@ -161,7 +162,8 @@ pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
 pub(crate) fn open_and_warn(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
     let platform = open_at(name, place)?;
     if name == "matterport"
-        && let Some(lack) = place.data.and_then(Matterport::lack_of_objects)
+        && let Some(data) = place.data
+        && let Some(lack) = Matterport::lack_of_objects(&stores::local(data)?)
     {
         output::pass_on(&lack);
     }
@@ -201,22 +203,22 @@ pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error>
             "give one of them",
         ));
     }
-    let data = || data.ok_or_else(|| no_data(name));
+    let data = || data.ok_or_else(|| no_data(name)).and_then(stores::local);
     match name {
         "house" => Ok(Box::new(HousePlatform::default())),
-        "matterport" => Ok(Box::new(Matterport::open(data()?)?)),
-        "process" => child(data()?),
+        "matterport" => Ok(Box::new(Matterport::open(&data()?)?)),
+        "process" => child(&data()?),
         #[cfg(feature = "habitat")]
         "habitat" => {
             let connectivity = connectivity.map(Path::to_owned);
             let options = HabitatOptions { island, connectivity, ..HabitatOptions::default() };
-            Ok(Box::new(HabitatPlatform::open(data()?, options, Arc::new(output::pass_on))?))
+            Ok(Box::new(HabitatPlatform::open(&data()?, options, Arc::new(output::pass_on))?))
         }
         #[cfg(feature = "live")]
-        "tdw" => live::tdw(data().ok(), place.at),
+        "tdw" => live::tdw(place.data, place.at),
         #[cfg(feature = "live")]
         "virtualhome" => live::virtualhome(place.at),
-        "recording" => Ok(Box::new(RecordingPlatform::open(data()?, Arc::new(output::pass_on))?)),
+        "recording" => Ok(Box::new(RecordingPlatform::open(&data()?, Arc::new(output::pass_on))?)),
         absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
             Err(Error::not_built(format!("this build has no platform {absent}")))
         }

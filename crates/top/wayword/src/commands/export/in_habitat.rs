@@ -1,7 +1,7 @@
 //! What VLN-CE episodes say of a run's scenes: the scene's file, the corners of the path, the distance over the
 //! navmesh.
 
-use crate::{error::Error, platforms, run::settings_of};
+use crate::{error::Error, platforms, run::settings_of, stores};
 use std::path::{Path, PathBuf};
 use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
 use wayword_formats::{Episode, InHabitat, jsonl::Record};
@@ -72,8 +72,9 @@ impl World {
 /// The scenes that a run was made in, and where they come from.
 fn scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), Error> {
     let settings = settings_of(run)?;
-    let data = settings.data.clone().unwrap_or_default();
-    Ok((platforms::open(&settings)?, data))
+    let platform = platforms::open(&settings)?;
+    let data = settings.data.as_deref().map(stores::local).transpose()?.unwrap_or_default().into_owned();
+    Ok((platform, data))
 }
 
 /// What is wrong, without the hint: a warning is one line.

@@ -21,6 +21,7 @@ use crate::{
     platforms::{self, has_hops},
     run::{RunFolder, WorldData, continued, id_of, is_begun, keep_id, refuse_file},
     settings::{Job, Settings},
+    stores,
     team::Team,
     usable,
 };
@@ -48,6 +49,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     if args.workers.is_asked() {
         return workers::run(out, &job, &args.workers, output);
     }
+    stores::refuse_address(out)?;
     if wayword_queue::Plan::find(out)?.is_some() && !is_begun(out) {
         return Err(Error::usage(
             format!("{} holds a run that workers make", out.display()),

@@ -6,6 +6,7 @@ use crate::{
     error::{Error, Exit},
     output::Output,
     run::{file, is_begun, write_whole},
+    stores::{self, RunPlace},
 };
 use serde::Serialize;
 use std::{
@@ -32,7 +33,12 @@ struct Merged {
 }
 
 pub(super) fn run(args: &RunsMerge, output: &Output) -> Result<Exit, Error> {
-    let (folder, plan) = (&args.run, Plan::of(&args.run)?);
+    let folder = args.to.as_ref().unwrap_or(&args.run);
+    match &args.to {
+        Some(to) => RunPlace::fetch(&args.run, to, output)?,
+        None => stores::refuse_merge(&args.run)?,
+    }
+    let plan = Plan::of(folder)?;
     let mut done = Vec::new();
     for chunk in 0..plan.chunks() {
         done.extend(done_of(folder, chunk)?);

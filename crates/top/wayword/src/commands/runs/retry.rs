@@ -6,6 +6,7 @@ use crate::{
     count::count,
     error::{Error, Exit},
     output::Output,
+    stores::RunPlace,
 };
 use serde::Serialize;
 use wayword_queue::{Plan, reopen};
@@ -17,14 +18,17 @@ struct Opened {
 }
 
 pub(super) fn run(args: &RunsRetry, output: &Output) -> Result<Exit, Error> {
-    let plan = Plan::of(&args.run)?;
-    let chunks = match queue_of(&args.run, &plan, args.password_env.as_deref())? {
-        None => reopen(&args.run, &plan, &args.reason)?,
+    let place = RunPlace::of(&args.run)?;
+    let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
+    place.take_marks(&plan)?;
+    let chunks = match queue_of(folder, &plan, args.password_env.as_deref())? {
+        None => reopen(folder, &plan, &args.reason)?,
         #[cfg(feature = "queue")]
         Some(queue) => queue.retry(&plan, &args.reason)?,
         #[cfg(not(feature = "queue"))]
         Some(never) => match never {},
     };
+    place.reopen(&chunks)?;
     let told = match chunks.len() {
         0 => format!("no chunk has a failure with the words {:?}", args.reason),
         opened => format!("{} opened again: start workers with the same command as before", count(opened, "chunk")),

@@ -8,6 +8,7 @@ use crate::{
     error::{Error, Exit},
     interrupt,
     output::Output,
+    stores::RunPlace,
 };
 use serde::Serialize;
 use std::{
@@ -95,10 +96,12 @@ pub(super) struct AtWork {
 }
 
 pub(super) fn run(args: &RunsStatus, output: &Output) -> Result<Exit, Error> {
-    let plan = Plan::of(&args.run)?;
-    let queue = queue_of(&args.run, &plan, args.password_env.as_deref())?;
+    let place = RunPlace::of(&args.run)?;
+    let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
+    let queue = queue_of(folder, &plan, args.password_env.as_deref())?;
     loop {
-        let mut status = Status::of(&args.run, &plan)?;
+        place.take_marks(&plan)?;
+        let mut status = Status { run: args.run.display().to_string(), ..Status::of(folder, &plan)? };
         #[cfg(feature = "queue")]
         if let Some(queue) = &queue {
             status.add(queue.look()?);
@@ -122,12 +125,7 @@ pub(super) fn run(args: &RunsStatus, output: &Output) -> Result<Exit, Error> {
 impl Status {
     /// What the folder says.
     fn of(folder: &Path, plan: &Plan) -> Result<Self, Error> {
-        let mut status = Self {
-            run: folder.display().to_string(),
-            items: plan.items.len(),
-            chunks: plan.chunks(),
-            ..Self::default()
-        };
+        let mut status = Self { items: plan.items.len(), chunks: plan.chunks(), ..Self::default() };
         let mut done = Vec::new();
         for chunk in 0..plan.chunks() {
             if let Some(one) = done_of(folder, chunk)? {

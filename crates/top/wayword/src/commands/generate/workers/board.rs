@@ -1,14 +1,11 @@
 //! Where a worker gets its chunks, and where its calls are kept: in a shared folder, or in a database.
 
-use crate::{calls::Keeping, cli::AskedWorkers, error::Error, output::Output, settings::Service};
+use crate::{calls::Keeping, cli::AskedWorkers, error::Error, output::Output, settings::Service, stores::RunPlace};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use wayword_queue::{Beat, Board, Heart, Part, Plan, Shard, chunk_folder, put_new};
+use wayword_queue::{Beat, Board, Heart, Part, Plan, Shard, WAY, chunk_folder, put_new};
 
-/// The file that says how a run's chunks are handed out: by one way alone.
-const FILE: &str = "workers.json";
-
-/// How a run's chunks are handed out.
+/// How a run's chunks are handed out: by one way alone.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Way {
@@ -24,7 +21,7 @@ impl Way {
     /// # Errors
     /// When its file cannot be read.
     pub(crate) fn of(folder: &Path) -> Result<Option<Self>, Error> {
-        let path = folder.join(FILE);
+        let path = folder.join(WAY);
         if !path.exists() {
             return Ok(None);
         }
@@ -35,16 +32,17 @@ impl Way {
     }
 
     /// Keeps the way, or refuses another one.
-    fn keep(&self, folder: &Path) -> Result<(), Error> {
-        let path = folder.join(FILE);
+    fn keep(&self, place: &RunPlace) -> Result<(), Error> {
+        let (folder, path) = (place.folder(), place.folder().join(WAY));
         let text = serde_json::to_string(self).unwrap_or_default();
         put_new(&path, text.as_bytes())?;
+        place.agree(WAY)?;
         match Self::of(folder)? {
             Some(kept) if kept == *self => Ok(()),
             kept => Err(Error::usage(
                 format!(
                     "{}: its workers take chunks by {}, not by {self}",
-                    folder.display(),
+                    place.named().display(),
                     kept.unwrap_or(Self::Shards)
                 ),
                 "give the same flag (--shard or --queue) and the same database to all workers, or another --out",
@@ -74,35 +72,36 @@ pub(super) enum Counter<'a> {
     Queue {
         queue: wayword_queue::Queue,
         database: wayword_database::Database,
+        lease: std::time::Duration,
     },
 }
 
 impl<'a> Counter<'a> {
     /// Joins the workers of a run.
-    pub(super) fn open(folder: &'a Path, plan: &'a Plan, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
+    pub(super) fn open(place: &'a RunPlace, plan: &'a Plan, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
         match (asked.shard, &asked.queue) {
             (Some(part), _) => {
-                let token = worker.to_owned();
-                Way::Shards.keep(folder)?;
+                let (folder, token) = (place.folder(), worker.to_owned());
+                Way::Shards.keep(place)?;
                 let beat = Beat { worker: token.clone(), token, part: format!("shard {part}") };
                 let heart = Heart::start(folder, &part.name(), beat, asked.lease(), |file| part.overlaps(file))?;
                 Ok(Self::Shard { folder, plan, part, heart })
             }
-            (None, Some(name)) => Self::queue(folder, plan, name, worker, asked),
+            (None, Some(name)) => Self::queue(place, plan, name, worker, asked),
             (None, None) => Err(Error::usage("this worker has no part", "give --shard or --queue")),
         }
     }
 
     #[cfg(feature = "queue")]
-    fn queue(folder: &Path, plan: &Plan, name: &str, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
+    fn queue(place: &RunPlace, plan: &Plan, name: &str, worker: &str, asked: &AskedWorkers) -> Result<Self, Error> {
         let database = wayword_database::Database::named(name, asked.password_env.as_deref())?;
-        Way::Queue(name.to_owned()).keep(folder)?;
-        let queue = wayword_queue::Queue::open(database.clone(), folder, plan)?.join(worker, asked.lease())?;
-        Ok(Self::Queue { queue, database })
+        Way::Queue(name.to_owned()).keep(place)?;
+        let queue = wayword_queue::Queue::open(database.clone(), place.folder(), plan)?.join(worker, asked.lease())?;
+        Ok(Self::Queue { queue, database, lease: asked.lease() })
     }
 
     #[cfg(not(feature = "queue"))]
-    fn queue(_: &Path, _: &Plan, _: &str, _: &str, _: &AskedWorkers) -> Result<Self, Error> {
+    fn queue(_: &RunPlace, _: &Plan, _: &str, _: &str, _: &AskedWorkers) -> Result<Self, Error> {
         Err(Error::not_built("--queue cannot be used: this build has no way to a database"))
     }
 
@@ -114,7 +113,7 @@ impl<'a> Counter<'a> {
                 Keeping::Chunks(recordings.filter(|path| path.exists()).collect())
             }
             #[cfg(feature = "queue")]
-            Self::Queue { database, .. } => Keeping::Database(database.clone()),
+            Self::Queue { database, lease, .. } => Keeping::Database(database.clone(), *lease),
         }
     }
 

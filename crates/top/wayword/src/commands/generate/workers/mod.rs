@@ -17,6 +17,7 @@ use crate::{
     plan::Plan,
     platforms,
     settings::{Job, Settings},
+    stores::RunPlace,
     team::Team,
     usable,
 };
@@ -24,7 +25,7 @@ use board::Counter;
 pub(crate) use board::Way;
 use std::path::Path;
 use told::{Planned, Worked};
-use wayword_queue::{Finished, work, worker_name};
+use wayword_queue::{Finished, PLAN, work, worker_name};
 
 /// Why a worker stops before nothing is left.
 pub(super) struct Why {
@@ -33,6 +34,8 @@ pub(super) struct Why {
 }
 
 pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, output: &Output) -> Result<Exit, Error> {
+    let place = RunPlace::of(out)?;
+    let out = place.folder();
     warn_of_no_effect(&job.settings, output);
     planned::refuse_other_folder(out)?;
     let kept = wayword_queue::Plan::find(out)?;
@@ -55,41 +58,51 @@ pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, output: &Output) 
     if before.is_none() {
         usable::tell_of_episodes(&settings, &plan.items, platform.as_ref(), output)?;
         refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
+        place.check()?;
         planned::put(out, &plan, &settings, asked)?;
+        place.agree(PLAN)?;
     }
     // Another worker may have written the plan meanwhile: what the folder has counts.
     let kept = kept.map_or_else(|| wayword_queue::Plan::of(out), Ok)?;
-    planned::agree(out, &kept, &plan, &settings, asked)?;
+    planned::agree(place.named(), &kept, &plan, &settings, asked)?;
     if asked.plan {
-        let told = Planned::of(out, &kept);
+        let told = Planned::of(place.named(), &kept);
         output.data(&told, &told);
         return Ok(Exit::Done);
     }
-    let worked = make_chunks(out, &kept, &plan, &settings, asked, output)?;
+    let worked = make_chunks(&place, &kept, &plan, &settings, asked, output)?;
     output.data(&worked, &worked);
     Ok(worked.exit)
 }
 
 fn make_chunks(
-    out: &Path,
+    place: &RunPlace,
     kept: &wayword_queue::Plan,
     plan: &Plan<'_>,
     settings: &Settings,
     asked: &AskedWorkers,
     output: &Output,
 ) -> Result<Worked, Error> {
-    let worker = worker_name();
-    let counter = Counter::open(out, kept, &worker, asked)?;
+    let (worker, out) = (worker_name(), place.folder());
+    place.take_marks(kept)?;
+    let counter = Counter::open(place, kept, &worker, asked)?;
     let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
     let calls = Calls::open(&job, &kept.run, output)?;
+    if place.is_stored() && asked.shard.is_some() && calls.is_some() {
+        return Err(Error::usage(
+            format!("{}: a shard cannot keep the calls of models in an object store", place.named().display()),
+            "give --queue DATABASE, which keeps them; or --out a folder that all workers share",
+        ));
+    }
     let lookout = Lookout::of(settings, calls.as_ref(), &plan.styles)?;
     let team = Team::new(settings, calls.as_ref(), plan.platform)?.with(lookout);
     let shop = Workshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_first(calls.as_ref());
     let make = |claimed| chunk::make(out, kept, &shop, claimed, &worker, output);
-    let finished: Finished<Why> = counter.with(|board| work(board, make, interrupted))?;
+    let finished: Finished<Why> = counter.with(|board| place.sending(board, |board| work(board, make, interrupted)))?;
     counter.close()?;
-    Worked::of(out, kept, finished, calls.as_ref().map(Calls::spent))
+    place.send_marks(kept)?;
+    Worked::of(place, kept, finished, calls.as_ref().map(Calls::spent))
 }
 
 fn interrupted() -> Option<Why> {

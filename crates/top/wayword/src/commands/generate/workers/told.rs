@@ -5,6 +5,7 @@ use crate::{
     calls::Spent,
     count::count,
     error::{Error, Exit},
+    stores::RunPlace,
 };
 use serde::Serialize;
 use std::{fmt, path::Path};
@@ -63,15 +64,20 @@ pub(super) struct Worked {
 }
 
 impl Worked {
-    pub(super) fn of(out: &Path, plan: &Plan, finished: Finished<Why>, spent: Option<Spent>) -> Result<Self, Error> {
+    pub(super) fn of(
+        place: &RunPlace,
+        plan: &Plan,
+        finished: Finished<Why>,
+        spent: Option<Spent>,
+    ) -> Result<Self, Error> {
         let Finished { done, dropped, stopped } = finished;
         let sum = |of: fn(&Done) -> usize| done.iter().map(of).sum();
         let failed = sum(Done::failures);
         let made: usize = sum(|done| done.made);
         Ok(Self {
-            run: out.display().to_string(),
+            run: place.named().display().to_string(),
             chunks: done.len(),
-            unfinished: (0..plan.chunks()).filter(|chunk| !done_path(out, *chunk).exists()).count(),
+            unfinished: (0..plan.chunks()).filter(|chunk| !done_path(place.folder(), *chunk).exists()).count(),
             items: made + failed,
             written: sum(|done| done.written),
             rejected: sum(|done| done.rejected),

@@ -1,0 +1,63 @@
+//! Stands in for object stores in a build without them.
+
+use crate::error::Error;
+use std::{
+    collections::BTreeSet,
+    convert::Infallible,
+    path::{Path, PathBuf},
+};
+use wayword_queue::{Board, Plan, QueueError, Shard};
+
+/// The hint that no build of a release has this.
+fn not_built(address: &str) -> Error {
+    Error::usage(
+        format!("{address}: this build cannot reach object stores"),
+        "build it with `cargo build --release --features full,cloud`",
+    )
+}
+
+pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
+    Err(not_built(address))
+}
+
+/// There is none.
+pub(super) struct StoredRun(Infallible);
+
+impl StoredRun {
+    pub(super) fn open(address: &str, _: &Path) -> Result<Self, Error> {
+        Err(not_built(address))
+    }
+
+    pub(super) fn check(&self) -> Result<(), QueueError> {
+        match self.0 {}
+    }
+
+    pub(super) fn take(&self, _: &str) -> Result<(), QueueError> {
+        match self.0 {}
+    }
+
+    pub(super) fn agree(&self, _: &str) -> Result<(), QueueError> {
+        match self.0 {}
+    }
+
+    pub(super) fn take_marks(&self, _: &Plan) -> Result<BTreeSet<usize>, QueueError> {
+        match self.0 {}
+    }
+
+    pub(super) fn send_marks(&self, _: &Plan) -> Result<(), QueueError> {
+        match self.0 {}
+    }
+
+    pub(super) fn reopen(&self, _: usize) -> Result<(), QueueError> {
+        match self.0 {}
+    }
+
+    pub(super) fn fetch(&self, _: &Plan, _: &dyn Fn(u64, u64)) -> Result<(), QueueError> {
+        match self.0 {}
+    }
+
+    /// Any board would do.
+    pub(super) fn sending(&self, _: &dyn Board) -> Shard<'static> {
+        match self.0 {}
+    }
+}

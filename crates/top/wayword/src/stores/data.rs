@@ -1,0 +1,59 @@
+//! Data in object stores: fetched once into a folder of this machine.
+
+use crate::{error::Error, output};
+use etcetera::BaseStrategy;
+use sha2::{Digest, Sha256};
+use std::{
+    cell::Cell,
+    collections::BTreeMap,
+    fmt::Write,
+    path::PathBuf,
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+use wayword_queue::{QueueError, cloud::Bucket};
+
+/// Largest data that is fetched, bytes.
+const MOST_BYTES: u64 = 1 << 42;
+/// How often the progress is told.
+const EVERY: Duration = Duration::from_secs(10);
+
+/// The folder of this machine with the data of an address. It is fetched again where the store's files have changed, at most once
+/// by one process.
+pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
+    static FETCHED: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
+    let mut known = FETCHED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(folder) = known.get(address) {
+        return Ok(folder.clone());
+    }
+    let folder = folder_of(address)?;
+    let bucket = Bucket::open(address).map_err(QueueError::from)?;
+    let told = Cell::new(None::<Instant>);
+    let progress = |done: u64, all: u64| {
+        if done < all && told.get().is_none_or(|at| at.elapsed() > EVERY) {
+            told.set(Some(Instant::now()));
+            output::pass_on(&format!("fetching {address}: {} of {} MB", done >> 20, all >> 20));
+        }
+    };
+    let got = bucket.fetch_folder("", &folder, MOST_BYTES, &progress).map_err(QueueError::from)?;
+    if got.files + got.kept == 0 {
+        return Err(Error::usage(
+            format!("{address}: there is no data there"),
+            "give the prefix under which the files of the data's folder lie",
+        ));
+    }
+    known.insert(address.to_owned(), folder.clone());
+    Ok(folder)
+}
+
+/// Where the data of an address is kept: the user's cache.
+fn folder_of(address: &str) -> Result<PathBuf, Error> {
+    let strategy = etcetera::choose_base_strategy()
+        .map_err(|_| Error::usage("there is no home folder to fetch the data to", "set HOME or XDG_CACHE_HOME"))?;
+    let hash = Sha256::digest(address.trim_end_matches('/').as_bytes());
+    let name = hash.iter().take(16).fold(String::new(), |mut name, byte| {
+        let _ = write!(name, "{byte:02x}");
+        name
+    });
+    Ok(strategy.cache_dir().join("wayword").join("data").join(name))
+}

@@ -1,0 +1,151 @@
+//! Where the run of many workers lies: in a folder that all share, or in an object store.
+
+use super::{StoredRun, address};
+use crate::{error::Error, output::Output};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+use wayword_queue::{Board, PLAN, Plan, QueueError, WAY, worker_name};
+
+/// The place of a run.
+pub(crate) struct RunPlace {
+    /// As the user named it.
+    named: PathBuf,
+    /// Where it is worked on. For a run in an object store this is a folder of this process alone.
+    folder: PathBuf,
+    stored: Option<StoredRun>,
+    /// Whether the folder is removed at the end.
+    is_temporary: bool,
+}
+
+impl RunPlace {
+    /// The place that the user named, with what it has of the run. A run in an object store gets a folder for temporary files,
+    /// which is removed at the end.
+    ///
+    /// # Errors
+    /// When the address cannot be used, or this build cannot reach object stores.
+    pub(crate) fn of(named: &Path) -> Result<Self, Error> {
+        let Some(address) = address(named) else {
+            return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None, is_temporary: false });
+        };
+        let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
+        let stored = StoredRun::open(address, &folder)?;
+        let place = Self { named: named.to_owned(), folder, stored: Some(stored), is_temporary: true };
+        place.look()?;
+        Ok(place)
+    }
+
+    /// Fetches a run from an object store into a folder that stays.
+    ///
+    /// # Errors
+    /// When the place is a folder already, or the run cannot be fetched.
+    pub(crate) fn fetch(named: &Path, to: &Path, output: &Output) -> Result<(), Error> {
+        let Some(address) = address(named) else {
+            return Err(Error::usage(
+                "--to is for a run in an object store",
+                "leave it out: a run in a folder is merged there",
+            ));
+        };
+        let before = Plan::find(to)?;
+        let stored = StoredRun::open(address, to)?;
+        let place = Self { named: named.to_owned(), folder: to.to_owned(), stored: Some(stored), is_temporary: false };
+        place.look()?;
+        let plan = Plan::of(to)?;
+        if before.is_some_and(|before| before != plan) {
+            return Err(Error::usage(format!("{}: this folder has another run", to.display()), "give an empty folder"));
+        }
+        let bar = output.bytes();
+        place.with(|stored| {
+            stored.fetch(&plan, &|done, all| {
+                bar.set_length(all);
+                bar.set_position(done);
+            })
+        })?;
+        bar.finish_and_clear();
+        Ok(())
+    }
+
+    /// The folder in which this process works.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The place as the user named it, for messages.
+    pub(crate) fn named(&self) -> &Path {
+        &self.named
+    }
+
+    /// Whether it is in an object store.
+    pub(crate) fn is_stored(&self) -> bool {
+        self.stored.is_some()
+    }
+
+    fn with<T: Default>(&self, work: impl FnOnce(&StoredRun) -> Result<T, QueueError>) -> Result<T, Error> {
+        Ok(self.stored.as_ref().map(work).transpose()?.unwrap_or_default())
+    }
+
+    fn look(&self) -> Result<(), Error> {
+        self.with(|stored| {
+            stored.take(PLAN)?;
+            stored.take(WAY)
+        })
+    }
+
+    /// Makes sure that the store lets one of several writers win.
+    ///
+    /// # Errors
+    /// When it does not, or cannot be used.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        self.with(StoredRun::check)
+    }
+
+    /// Makes the plan, and the way in which chunks are handed out, the same for all workers: whose is there first counts.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub(crate) fn agree(&self, file: &str) -> Result<(), Error> {
+        self.with(|stored| stored.agree(file))
+    }
+
+    /// Takes the marks of finished chunks.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub(crate) fn take_marks(&self, plan: &Plan) -> Result<(), Error> {
+        self.with(|stored| stored.take_marks(plan).map(drop))
+    }
+
+    /// Sends the marks that killed workers did not send.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub(crate) fn send_marks(&self, plan: &Plan) -> Result<(), Error> {
+        self.with(|stored| stored.send_marks(plan))
+    }
+
+    /// Removes marks of chunks that are to be made again.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub(crate) fn reopen(&self, chunks: &[usize]) -> Result<(), Error> {
+        self.with(|stored| chunks.iter().try_for_each(|chunk| stored.reopen(*chunk)))
+    }
+
+    /// Works with a board. In an object store each chunk is sent before the board hears that it is finished.
+    pub(crate) fn sending<T>(&self, board: &dyn Board, work: impl FnOnce(&dyn Board) -> T) -> T {
+        match &self.stored {
+            None => work(board),
+            Some(stored) => work(&stored.sending(board)),
+        }
+    }
+}
+
+impl Drop for RunPlace {
+    fn drop(&mut self) {
+        if self.is_temporary {
+            // The system empties the folder of temporary files sooner or later.
+            let _ = fs::remove_dir_all(&self.folder);
+        }
+    }
+}
