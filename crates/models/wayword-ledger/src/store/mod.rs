@@ -21,8 +21,8 @@ pub use postgres::TABLES;
 pub(crate) use postgres::{Postgres, Pulse};
 pub(crate) use sqlite::{Sqlite, may_hold};
 
-/// Keeps calls, requests, and what runs have spent. Every function may be called by many threads at once.
-pub(crate) trait Store: fmt::Debug + Send + Sync {
+/// Keeps calls and requests, and keeps to limits. Every function may be called by many threads at once.
+pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
     /// Where it is, for messages.
     fn place(&self) -> Place;
 
@@ -72,7 +72,10 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     fn turn(&self, _provider: &str, _rates: Rates, _tokens: u64) -> Result<Option<Slot>, LedgerError> {
         Ok(None)
     }
+}
 
+/// What is asked of the calls that are kept, and what drops them.
+pub(crate) trait Queries {
     /// What a run has spent so far against its limits: what was paid, plus the upper bounds of requests that may have
     /// been paid.
     fn spent(&self, run: &str) -> Result<Spent, LedgerError>;

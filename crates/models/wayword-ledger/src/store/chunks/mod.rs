@@ -8,7 +8,7 @@ mod line;
 mod read;
 mod tally;
 
-use super::{Claimed, End, Holder, Order, Request, Sqlite, Store};
+use super::{Claimed, End, Holder, Order, Queries, Request, Sqlite, Store};
 use crate::{
     Answer, By, CostLine, Filter, Key, LedgerError, Place, Refused, Row, Spending,
     budget::{Spent, fits},
@@ -217,7 +217,9 @@ impl Store for Chunks {
     fn keeps_budget(&self) -> bool {
         true
     }
+}
 
+impl Queries for Chunks {
     fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
         Ok(self.state().spent(run))
     }

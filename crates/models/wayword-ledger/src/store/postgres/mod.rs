@@ -12,13 +12,8 @@ mod rates;
 mod rows;
 mod tables;
 
-use super::{Claimed, End, Holder, Order, Request, Slot, Store};
-use crate::{
-    Answer, By, CostLine, Filter, Key, LedgerError, Place, Rates, Refused, Row, Spending,
-    budget::{Spent, fits},
-    checksum,
-    run::Sent,
-};
+use super::{Claimed, End, Holder, Queries, Request, Slot, Store};
+use crate::{Answer, Key, LedgerError, Place, Rates, Refused, Row, budget::fits, checksum, run::Sent};
 use link::{Link, Reserved};
 use presence::Presence;
 use rows::{columns, count, sound, text};
@@ -163,11 +158,11 @@ impl Store for Postgres {
             match self.link.reserve(number, request)? {
                 Reserved::Yes => return Ok(number),
                 // If another request has ended meanwhile, this one may fit after all.
-                Reserved::No => fits(limits, self.spent_by(request.run)?, most_usd)?,
+                Reserved::No => fits(limits, self.spent(request.run)?, most_usd)?,
                 Reserved::Again => {}
             }
         }
-        let spent = self.spent_by(request.run)?;
+        let spent = self.spent(request.run)?;
         Err(match (limits.max_usd, limits.max_calls) {
             (None, Some(max_calls)) => Refused::MaxCalls { max_calls },
             (max_usd, _) => Refused::MaxUsd {
@@ -226,42 +221,5 @@ impl Store for Postgres {
 
     fn turn(&self, provider: &str, rates: Rates, tokens: u64) -> Result<Option<Slot>, LedgerError> {
         rates::turn(&self.link, provider, rates, tokens)
-    }
-
-    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
-        self.spent_by(run)
-    }
-
-    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
-        self.spending_of(run)
-    }
-
-    fn each(
-        &self,
-        filter: &Filter,
-        order: Order,
-        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
-    ) -> Result<(), LedgerError> {
-        self.each_row(filter, order, take)
-    }
-
-    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
-        self.drop_calls(filter)
-    }
-
-    fn prune_changed(&self) -> Result<usize, LedgerError> {
-        self.drop_changed()
-    }
-
-    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
-        self.has_answers(model, base_url)
-    }
-
-    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
-        self.cost_lines(by)
-    }
-
-    fn lost(&self) -> Result<u64, LedgerError> {
-        self.lost_requests()
     }
 }

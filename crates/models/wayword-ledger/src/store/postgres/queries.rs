@@ -4,7 +4,12 @@ use super::{
     Postgres, amount,
     rows::{columns, sound},
 };
-use crate::{By, CostLine, Filter, LedgerError, Row, Spending, budget::Spent, ledger::now_unix_s, store::Order};
+use crate::{
+    By, CostLine, Filter, LedgerError, Row, Spending,
+    budget::Spent,
+    ledger::now_unix_s,
+    store::{Order, Queries},
+};
 use wayword_database::postgres::{self, types::ToSql};
 
 /// How many rows are fetched, or dropped, at a time.
@@ -90,8 +95,8 @@ impl<'a> Values<'a> {
     }
 }
 
-impl Postgres {
-    pub(super) fn each_row(
+impl Queries for Postgres {
+    fn each(
         &self,
         filter: &Filter,
         order: Order,
@@ -122,7 +127,7 @@ impl Postgres {
         Ok(())
     }
 
-    pub(super) fn drop_calls(&self, filter: &Filter) -> Result<usize, LedgerError> {
+    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
         let values = Values::of(filter);
         let [model, run, before] = values.all();
         let mut all = 0;
@@ -136,7 +141,7 @@ impl Postgres {
         }
     }
 
-    pub(super) fn drop_changed(&self) -> Result<usize, LedgerError> {
+    fn prune_changed(&self) -> Result<usize, LedgerError> {
         let (mut changed, mut after) = (Vec::<String>::new(), None::<String>);
         let all = Filter::default();
         let values = Values::of(&all);
@@ -160,7 +165,7 @@ impl Postgres {
         Ok(changed.len())
     }
 
-    pub(super) fn cost_lines(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
+    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
         let sql = match by {
             By::Model => costs!("model"),
             By::Run => costs!("run"),
@@ -182,17 +187,17 @@ impl Postgres {
         Ok(lines?)
     }
 
-    pub(super) fn has_answers(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
         let sql = "SELECT 1 FROM wayword_ledger.calls WHERE model = $1 AND base_url = $2 LIMIT 1";
         Ok(!self.link.rows("look for a model's answers", sql, &[&model, &base_url])?.is_empty())
     }
 
-    pub(super) fn lost_requests(&self) -> Result<u64, LedgerError> {
+    fn lost(&self) -> Result<u64, LedgerError> {
         self.link.catch_up()?;
         Ok(self.link.row("count lost requests", LOST, &[], |row| count(row, 0))?.unwrap_or(0))
     }
 
-    pub(super) fn spent_by(&self, run: &str) -> Result<Spent, LedgerError> {
+    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
         self.link.catch_up()?;
         let spent = |row: &postgres::Row| {
             Ok(Spent {
@@ -204,7 +209,7 @@ impl Postgres {
         Ok(self.link.row("sum up what a run has spent", SPENT, &[&run], spent)?.unwrap_or_default())
     }
 
-    pub(super) fn spending_of(&self, run: &str) -> Result<Spending, LedgerError> {
+    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
         self.link.catch_up()?;
         let spending = |row: &postgres::Row| {
             Ok(Spending {

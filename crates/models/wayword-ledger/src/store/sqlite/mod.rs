@@ -5,10 +5,8 @@ mod queries;
 mod schema;
 mod writer;
 
-use super::{Claimed, End, Holder, Order, Request, Store};
-use crate::{
-    Answer, By, CostLine, Filter, Key, LedgerError, Place, Refused, Row, Spending, budget::Spent, network_at, run::Sent,
-};
+use super::{Claimed, End, Holder, Request, Store};
+use crate::{Answer, Key, LedgerError, Place, Refused, Row, network_at, run::Sent};
 use presence::Presence;
 use rusqlite::{Connection, OpenFlags, OptionalExtension, params};
 use std::{
@@ -180,43 +178,6 @@ impl Store for Sqlite {
 
     fn flush(&self) -> Result<(), LedgerError> {
         self.writer.flush()
-    }
-
-    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
-        self.spent_by(run)
-    }
-
-    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
-        self.spending_of(run)
-    }
-
-    fn each(
-        &self,
-        filter: &Filter,
-        order: Order,
-        take: &mut dyn FnMut(Row) -> Result<(), LedgerError>,
-    ) -> Result<(), LedgerError> {
-        self.each_row(filter, order, take)
-    }
-
-    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
-        self.drop_calls(filter)
-    }
-
-    fn prune_changed(&self) -> Result<usize, LedgerError> {
-        self.drop_changed()
-    }
-
-    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
-        self.has_answers(model, base_url)
-    }
-
-    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
-        self.cost_lines(by)
-    }
-
-    fn lost(&self) -> Result<u64, LedgerError> {
-        self.lost_requests()
     }
 }
 

@@ -4,7 +4,12 @@ use super::{
     Sqlite,
     schema::{COLUMNS, sound},
 };
-use crate::{By, CostLine, Filter, LedgerError, Row, Spending, budget::Spent, ledger::now_unix_s, store::Order};
+use crate::{
+    By, CostLine, Filter, LedgerError, Row, Spending,
+    budget::Spent,
+    ledger::now_unix_s,
+    store::{Order, Queries},
+};
 use rusqlite::{ToSql, params, params_from_iter};
 
 /// Removes the uses of dropped calls, and makes the file smaller.
@@ -44,8 +49,8 @@ fn order(filter: &Filter, order: Order) -> String {
     }
 }
 
-impl Sqlite {
-    pub(super) fn each_row(
+impl Queries for Sqlite {
+    fn each(
         &self,
         filter: &Filter,
         by: Order,
@@ -64,7 +69,7 @@ impl Sqlite {
         Ok(())
     }
 
-    pub(super) fn drop_calls(&self, filter: &Filter) -> Result<usize, LedgerError> {
+    fn prune(&self, filter: &Filter) -> Result<usize, LedgerError> {
         let failed = LedgerError::store(&self.path, "prune");
         let Where { sql, values } = Where::of(filter);
         let connection = self.reader();
@@ -74,7 +79,7 @@ impl Sqlite {
         Ok(dropped)
     }
 
-    pub(super) fn drop_changed(&self) -> Result<usize, LedgerError> {
+    fn prune_changed(&self) -> Result<usize, LedgerError> {
         let failed = LedgerError::store(&self.path, "prune");
         let connection = self.reader();
         let mut changed: Vec<rusqlite::types::Value> = Vec::new();
@@ -95,7 +100,7 @@ impl Sqlite {
         Ok(changed.len())
     }
 
-    pub(super) fn has_answers(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
+    fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError> {
         let failed = LedgerError::store(&self.path, "read");
         let reader = self.reader();
         let sql = "SELECT 1 FROM calls WHERE model = ?1 AND base_url = ?2 LIMIT 1";
@@ -103,7 +108,7 @@ impl Sqlite {
         statement.exists([model, base_url]).map_err(&failed)
     }
 
-    pub(super) fn cost_lines(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
+    fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError> {
         let failed = LedgerError::store(&self.path, "read");
         let of = match by {
             By::Model => "model",
@@ -129,14 +134,14 @@ impl Sqlite {
         lines.and_then(Iterator::collect).map_err(&failed)
     }
 
-    pub(super) fn lost_requests(&self) -> Result<u64, LedgerError> {
+    fn lost(&self) -> Result<u64, LedgerError> {
         self.writer.flush()?;
         let sql = "SELECT COUNT(*) FROM sent WHERE outcome IS NULL OR outcome = 'lost'";
         let lost = self.reader().query_row(sql, [], |row| count(row, 0));
         lost.map_err(LedgerError::store(&self.path, "read"))
     }
 
-    pub(super) fn spent_by(&self, run: &str) -> Result<Spent, LedgerError> {
+    fn spent(&self, run: &str) -> Result<Spent, LedgerError> {
         self.writer.flush()?;
         let sql = "SELECT TOTAL(CASE WHEN outcome = 'answered' THEN COALESCE(usd, most_usd)
                                      WHEN outcome IS NULL OR outcome = 'lost' THEN most_usd END),
@@ -145,7 +150,7 @@ impl Sqlite {
         self.reader().query_row(sql, params![run], spent).map_err(LedgerError::store(&self.path, "read"))
     }
 
-    pub(super) fn spending_of(&self, run: &str) -> Result<Spending, LedgerError> {
+    fn spending(&self, run: &str) -> Result<Spending, LedgerError> {
         self.writer.flush()?;
         let sql = "SELECT COUNT(*), TOTAL(outcome IS 'answered'), TOTAL(outcome IS NULL OR outcome = 'lost'),
                    TOTAL(usd), TOTAL(CASE WHEN outcome IS NULL OR outcome = 'lost' THEN most_usd END)
