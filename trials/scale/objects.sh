@@ -61,3 +61,6 @@ python3 trials/scale/container.py "$blob" wayword
 
 WAYWORD_TEST_S3=s3://wayword/tests WAYWORD_TEST_AZURE=az://wayword/tests \
     cargo test -p wayword-queue --features cloud --locked --test cloud -- "${@:2}"
+# Runs whose workers send what they make.
+WAYWORD_TEST_S3=s3://wayword/runs \
+    cargo test -p wayword --no-default-features --features queue,cloud --locked --test workers in_stores -- "${@:2}"

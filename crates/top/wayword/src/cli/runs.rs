@@ -10,7 +10,7 @@ Examples:
   wayword runs status runs/big --watch
   wayword runs status runs/big --prometheus > /var/lib/node_exporter/wayword.prom
   wayword runs merge runs/big
-  wayword runs merge s3://bucket/big --to runs/big    (needs the feature cloud)
+  wayword runs merge s3://bucket/big --to runs/big
   wayword runs retry runs/big --reason timeout
   wayword runs database wayword_db --sql --role workers | psql wayword_db")]
 pub struct Runs {
@@ -53,7 +53,7 @@ pub struct RunsStatus {
 pub struct RunsMerge {
     /// The run folder, or its address in an object store.
     pub run: PathBuf,
-    /// Fetch a run from an object store into this folder, and merge it there.
+    /// Fetch a run from an object store into this folder, and merge it there. Needs a build with the feature cloud.
     #[arg(long, value_name = "DIR")]
     pub to: Option<PathBuf>,
     /// Put together what is finished, although chunks are missing. Merge again later for the whole.
