@@ -48,6 +48,7 @@ pub(crate) enum Doubt {
     Odd(String),
 }
 
+#[cfg(any(feature = "lerobot", feature = "mcap"))]
 impl Doubt {
     pub(crate) fn into_words(self) -> String {
         match self {
