@@ -21,11 +21,13 @@ mod disk;
 mod error;
 mod flight;
 mod ledger;
+mod occasion;
 mod place;
 mod queries;
 mod rate;
 mod recording;
 mod run;
+mod span;
 mod stopper;
 mod store;
 
@@ -34,10 +36,12 @@ pub use call::{Answer, Call, Key, Row};
 pub use disk::network_at;
 pub use error::LedgerError;
 pub use ledger::Ledger;
+pub use occasion::Occasion;
 pub use place::Place;
 pub use queries::{By, CostLine, Filter, Spending};
 pub use rate::Rates;
 pub use run::{Attempts, OnceError, Run, Totals};
+pub use span::TARGET;
 pub use stopper::Stopper;
 #[cfg(feature = "postgres")]
 pub use store::TABLES;

@@ -6,6 +6,7 @@ use crate::{
     claim::{Claim, PATIENCE, Taken},
     ledger::{Ledger, now_unix_s},
     queries::Filter,
+    span::CallSpan,
     store::{End, Request},
 };
 use std::{
@@ -57,8 +58,13 @@ pub struct Totals {
 pub struct Attempts<'a> {
     run: &'a Run,
     key: &'a Key,
+    span: &'a CallSpan,
     /// The request in flight.
     open: Option<Sent>,
+    /// How many requests were sent.
+    sent: u32,
+    /// Of what kind the failure of the call is, if it fails.
+    failure: &'static str,
 }
 
 /// A request that was written down.
@@ -128,14 +134,31 @@ impl Run {
         call: &Call,
         send: impl FnOnce(&mut Attempts<'_>) -> Result<Answer, E>,
     ) -> Result<Answer, OnceError<E>> {
+        let span = CallSpan::begin(call);
+        let asked = self.once_within(&span, call, send);
+        match &asked {
+            Ok(_) | Err(OnceError::Call(_)) => {}
+            Err(OnceError::Refused(_)) => span.failed("refused"),
+            Err(OnceError::NotRecorded { .. }) => span.failed("not_recorded"),
+            Err(OnceError::Ledger(_)) => span.failed("ledger"),
+        }
+        asked
+    }
+
+    fn once_within<E>(
+        &self,
+        span: &CallSpan,
+        call: &Call,
+        send: impl FnOnce(&mut Attempts<'_>) -> Result<Answer, E>,
+    ) -> Result<Answer, OnceError<E>> {
         let key = call.key();
         loop {
-            if let Some(answer) = self.stored(&key)? {
+            if let Some(answer) = self.stored(&key, span)? {
                 return Ok(answer);
             }
             let Some(_flight) = self.ledger.flights().take_off(&key) else { continue };
             // Another thread may have finished the call between the first look and taking the flight.
-            if let Some(answer) = self.stored(&key)? {
+            if let Some(answer) = self.stored(&key, span)? {
                 return Ok(answer);
             }
             if let Some(recording) = self.ledger.recording() {
@@ -146,7 +169,7 @@ impl Run {
                 Taken::Answered => continue,
                 Taken::Stopped => return Err(OnceError::Refused(Refused::Stopped)),
             };
-            let mut attempts = Attempts { run: self, key: &key, open: None };
+            let mut attempts = Attempts { run: self, key: &key, span, open: None, sent: 0, failure: "failed" };
             return match send(&mut attempts) {
                 Ok(answer) => {
                     let stands = attempts.answered(call, answer)?;
@@ -155,15 +178,17 @@ impl Run {
                 }
                 Err(error) => {
                     attempts.failed("given up", true);
+                    attempts.unanswered();
                     Err(OnceError::Call(error))
                 }
             };
         }
     }
 
-    fn stored(&self, key: &Key) -> Result<Option<Answer>, LedgerError> {
+    fn stored(&self, key: &Key, span: &CallSpan) -> Result<Option<Answer>, LedgerError> {
         let answer = self.ledger.store().answer(key, &self.state.id)?;
         if answer.is_some() {
+            span.found();
             self.count(|totals| totals.hits += 1);
         }
         Ok(answer)
@@ -218,6 +243,10 @@ impl Attempts<'_> {
     /// written.
     pub fn begin(&mut self, most_usd: Option<f64>) -> Result<(), Refused> {
         self.failed("followed by another", true);
+        self.reserve(most_usd).inspect_err(|_| self.failure = "refused")
+    }
+
+    fn reserve(&mut self, most_usd: Option<f64>) -> Result<(), Refused> {
         if self.run.is_stopped() {
             return Err(Refused::Stopped);
         }
@@ -226,6 +255,7 @@ impl Attempts<'_> {
         match self.keep_sent(most_usd) {
             Ok(number) => {
                 self.open = Some(Sent { number, most_usd });
+                self.sent += 1;
                 self.run.count(|totals| totals.calls += 1);
                 Ok(())
             }
@@ -245,6 +275,7 @@ impl Attempts<'_> {
     /// The request was not sent after all.
     pub fn cancelled(&mut self) {
         let Some(sent) = self.open.take() else { return };
+        self.sent = self.sent.saturating_sub(1);
         self.run.state.budget.cancel(sent.most_usd);
         self.run.count(|totals| totals.calls -= 1);
         self.run.ledger.store().ended(&sent, End::Cancelled, "");
@@ -263,6 +294,18 @@ impl Attempts<'_> {
         self.run.ledger.store().ended(&sent, if maybe_paid { End::Lost } else { End::Failed }, reason);
     }
 
+    /// If the call fails, its failure is of this kind, for whoever watches the run: one word, without anything that a
+    /// service said.
+    pub fn fails_as(&mut self, kind: &'static str) {
+        self.failure = kind;
+    }
+
+    /// The call has failed.
+    fn unanswered(&self) {
+        self.span.sent(self.sent);
+        self.span.failed(self.failure);
+    }
+
     /// Stores an answer. Returns the one that is kept: an answer that another program stored first, or this one.
     fn answered(&mut self, call: &Call, answer: Answer) -> Result<Answer, LedgerError> {
         let open = self.open.take();
@@ -278,6 +321,8 @@ impl Attempts<'_> {
         };
         let store = self.run.ledger.store();
         let is_first = store.answered(open.as_ref(), row)?;
+        self.span.sent(self.sent);
+        self.span.answered(&answer);
         self.run.count(|totals| {
             totals.answered += 1;
             totals.tokens_in = totals.tokens_in.saturating_add(answer.tokens_in);

@@ -67,6 +67,18 @@ pub(crate) enum Unanswered {
     Refused(Refused),
 }
 
+impl Unanswered {
+    /// Its kind, in one word.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            Self::Failed(_) => "failed",
+            Self::Lost(_) => "lost",
+            Self::Closed(_) => "closed",
+            Self::Refused(_) => "refused",
+        }
+    }
+}
+
 /// The result of one attempt.
 enum Attempt {
     Heard(Heard, Duration),

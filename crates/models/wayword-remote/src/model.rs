@@ -17,7 +17,7 @@ use std::{
     thread,
 };
 use wayword_core::{Finish, LanguageModel, Message, ModelError, Reply, Request, Tool, Usage};
-use wayword_ledger::{Answer, Call, OnceError, Refused, Run};
+use wayword_ledger::{Answer, Call, Occasion, OnceError, Refused, Run};
 
 /// A model behind HTTP. Each of its calls is made once and kept in the ledger.
 pub struct RemoteModel {
@@ -64,7 +64,7 @@ impl RemoteModel {
                 size: size(request),
                 attempts: self.attempts,
             };
-            sending.make(attempts)
+            sending.make(attempts).inspect_err(|error| attempts.fails_as(error.kind()))
         });
         asked.map(reply).map_err(|error| self.error(error))
     }
@@ -186,6 +186,7 @@ impl LanguageModel for RemoteModel {
         if let [only] = requests {
             return vec![self.one(only)];
         }
+        let occasion = Occasion::here();
         let next = AtomicUsize::new(0);
         let work = || {
             let mut done = Vec::new();
@@ -196,7 +197,8 @@ impl LanguageModel for RemoteModel {
         };
         let mut results: Vec<Option<Result<Reply, ModelError>>> = requests.iter().map(|_| None).collect();
         thread::scope(|scope| {
-            let threads: Vec<_> = (0..self.threads.min(requests.len())).map(|_| scope.spawn(work)).collect();
+            let threads: Vec<_> =
+                (0..self.threads.min(requests.len())).map(|_| scope.spawn(|| occasion.on(work))).collect();
             for (at, result) in threads.into_iter().filter_map(|thread| thread.join().ok()).flatten() {
                 results[at] = Some(result);
             }
