@@ -8,6 +8,7 @@ use std::{
     },
     thread,
 };
+use wayword_ledger::Occasion;
 
 /// What `make` gives for each item, in the order of the items, on at most `threads` threads. When `ends` is true of a
 /// result, no further item is begun; the results of items that were not begun are missing at the end.
@@ -28,8 +29,9 @@ pub(crate) fn at_once<I: Sync, R: Send>(
             made.lock().unwrap_or_else(PoisonError::into_inner).push((at, result));
         }
     };
+    let occasion = Occasion::here();
     thread::scope(|scope| {
-        let others: Vec<_> = (1..threads.min(items.len())).map(|_| scope.spawn(work)).collect();
+        let others: Vec<_> = (1..threads.min(items.len())).map(|_| scope.spawn(|| occasion.on(work))).collect();
         work();
         for other in others {
             if let Err(panic) = other.join() {

@@ -170,6 +170,17 @@ impl Error {
         }
     }
 
+    /// What an item that failed was lacking, in one word.
+    pub(crate) fn of(&self) -> &'static str {
+        match self {
+            Self::Model(_) | Self::Observe(ObserveError::Model(_)) | Self::Walk(WalkError::Model(_)) => "model",
+            Self::Platform(_) | Self::Observe(ObserveError::Platform(_)) | Self::Walk(WalkError::Platform(_)) => {
+                "platform"
+            }
+            _ => "other",
+        }
+    }
+
     /// Whether the disk is full or gone.
     fn is_of_the_disk(&self) -> bool {
         let is_full = |error: &io::Error| matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded);

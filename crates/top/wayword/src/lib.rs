@@ -47,6 +47,7 @@ mod texts;
 mod usable;
 #[cfg(feature = "habitat")]
 mod walking;
+mod watch;
 
 use clap::Parser;
 use cli::Cli;

@@ -16,6 +16,7 @@ use crate::{
 use std::collections::BTreeMap;
 use wayword_checks::{Checked, Evidence, Memory, Source};
 use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Path, Platform, PlatformError, SceneId, View};
+use wayword_ledger::Occasion;
 use wayword_synthesis::{
     detection::{alone, seek},
     observe::{Planned, gazes_around, observe_with, talk_about},
@@ -113,7 +114,8 @@ pub fn write(
     };
     let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
     if let Some(lookout) = team.lookout() {
-        lookout.has_looked_at(seek(&world, &path, &mut observations, lookout.seeker())?);
+        let looked = Occasion::with_purpose("detect", || seek(&world, &path, &mut observations, lookout.seeker()))?;
+        lookout.has_looked_at(looked);
     }
     let walk = Walk::new(path, observations);
     let detector = team.lookout().map(Lookout::name);

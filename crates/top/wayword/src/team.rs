@@ -11,6 +11,7 @@ use crate::{
 use std::{fs, path::Path, sync::Arc};
 use wayword_checks::open::Calibration;
 use wayword_core::{Answerer, LanguageModel, ModelError, Platform, Reply, Request};
+use wayword_ledger::Occasion;
 use wayword_synthesis::{
     dialogue::{Asker, Mode, RulesAsker, RulesSummariser, Summariser},
     models::{ModelAnswerer, ModelAsker, ModelSummariser, ModelWriter},
@@ -58,27 +59,27 @@ impl Team {
             Labels { list_everything: platform.lists_everything(), calibration: calibration(settings, platform)? };
         let prompts = Arc::new(prompts(settings)?);
         let roles = &settings.roles;
-        let model = |name: &str| -> Result<Option<Arc<dyn LanguageModel>>, Error> {
+        let model = |name: &str, purpose: &'static str| -> Result<Option<Arc<dyn LanguageModel>>, Error> {
             match calls.filter(|_| is_model(name)) {
-                Some(calls) => Ok(Some(sampled(calls.model(name)?, sample))),
+                Some(calls) => Ok(Some(Arc::new(Purposeful { model: sampled(calls.model(name)?, sample), purpose }))),
                 None => Ok(None),
             }
         };
         let prompts_hash = (!roles.models().is_empty()).then(|| prompts.hash().to_owned());
         let prompts = || Arc::clone(&prompts);
-        let sees = model(&roles.see)?;
+        let sees = model(&roles.see, "see")?;
         let doubts = sees.is_some();
         // Without a dialogue there is no asker and no summariser.
-        let in_dialogue = |name: &str| if settings.has_dialogue() { model(name) } else { Ok(None) };
-        let writes = model(&roles.write)?;
+        let in_dialogue = |name: &str, purpose| if settings.has_dialogue() { model(name, purpose) } else { Ok(None) };
+        let writes = model(&roles.write, "write")?;
         let finisher = writes.is_some() && roles.finish == Finish::Rules;
         Ok(Self {
-            asker: match in_dialogue(&roles.ask)? {
+            asker: match in_dialogue(&roles.ask, "ask")? {
                 Some(model) => Box::new(ModelAsker::new(model, prompts())),
                 None if doubts => Box::new(RulesAsker::for_models()),
                 None => Box::new(RulesAsker::default()),
             },
-            summariser: match in_dialogue(&roles.summarise)? {
+            summariser: match in_dialogue(&roles.summarise, "summarise")? {
                 Some(model) => Box::new(ModelSummariser::new(model, prompts())),
                 None => Box::new(RulesSummariser),
             },
@@ -164,6 +165,22 @@ impl LanguageModel for Sampled {
         let again =
             |request: &Request| Request { replicate: request.replicate + self.sample * REPLICATES, ..request.clone() };
         self.model.complete(&requests.iter().map(again).collect::<Vec<_>>())
+    }
+}
+
+/// A model in a role, whose calls tell whoever watches what they are for.
+struct Purposeful {
+    model: Arc<dyn LanguageModel>,
+    purpose: &'static str,
+}
+
+impl LanguageModel for Purposeful {
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>> {
+        Occasion::with_purpose(self.purpose, || self.model.complete(requests))
     }
 }
 

@@ -162,7 +162,8 @@ Examples:
   wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run
   wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)
   wayword generate --paths 100000 --out runs/big --plan             (then, on many machines, the same with:)
-  wayword generate --paths 100000 --out runs/big --shard 3/64       (or: --queue wayword_db)")]
+  wayword generate --paths 100000 --out runs/big --shard 3/64       (or: --queue wayword_db)
+  wayword generate --paths 20 --out runs/houses --spans runs/houses-spans")]
 pub struct Generate {
     /// Settings as TOML, with the names of these flags. A flag wins over the file.
     #[arg(long, value_name = "FILE")]
@@ -174,6 +175,11 @@ pub struct Generate {
     /// more, because questions that are asked twice and texts that are rewritten are not counted.
     #[arg(long)]
     pub dry_run: bool,
+    /// Write what happens as spans into a file of this process in this folder: a line of JSON for the process and for each
+    /// chunk, item and call of a model, when it ends, with its parent and how long it took. Without words of prompts and
+    /// answers.
+    #[arg(long, value_name = "FOLDER", conflicts_with = "dry_run")]
+    pub spans: Option<PathBuf>,
     /// Which part of it this worker makes.
     #[command(flatten)]
     pub workers: AskedWorkers,
@@ -225,8 +231,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     /// Flags of `generate` that have no key in a settings file.
-    const FLAGS_ALONE: [&str; 9] =
-        ["chunk", "config", "dry_run", "lease_s", "out", "password_env", "plan", "queue", "shard"];
+    const FLAGS_ALONE: [&str; 10] =
+        ["chunk", "config", "dry_run", "lease_s", "out", "password_env", "plan", "queue", "shard", "spans"];
     /// Tables of a settings file that have no flag.
     const TABLES: [&str; 3] = ["providers", "roles", "service"];
 

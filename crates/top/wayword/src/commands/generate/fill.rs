@@ -1,6 +1,7 @@
 //! Makes the items that a run folder lacks.
 
 use super::{
+    item_span::ItemSpan,
     keep::keep,
     pace::Pace,
     progress::{Progress, Stop},
@@ -25,6 +26,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
     thread,
 };
+use wayword_ledger::Occasion;
 
 /// What items are made with: opened once, however many folders are filled.
 pub(super) struct Workshop<'a> {
@@ -80,12 +82,19 @@ impl Workshop<'_> {
         let pace = Pace::new(left.len(), workers, expected);
         let world = RunPlatform { platform: self.plan.platform, data: Some(data), scenes: &self.scenes };
         let unmade = AtomicUsize::new(left.len());
-        let making = |item: &&Item| {
+        let making = |item: &Item| {
             interrupt::check()?;
             let threads = calls.map_or(1, |calls| calls.views_at_once(unmade.load(Ordering::Relaxed)));
             let made = make(item, self.settings, world, self.team, styles, threads);
             unmade.fetch_sub(1, Ordering::Relaxed);
             made
+        };
+        let occasion = Occasion::here();
+        let making = |item: &&Item| {
+            occasion.on(|| {
+                let mut span = ItemSpan::begin(item);
+                (span.make(|| making(item)), span)
+            })
         };
         let bar = progress.bar();
         thread::scope(|scope| {
@@ -94,8 +103,9 @@ impl Workshop<'_> {
                 let said = |told: &str| output.in_lines(format_args!("{}/{all} items, {told}", bar.position()));
                 scope.spawn(move || pace.watch(|| calls.spent(), |told| bar.set_message(told.to_owned()), said));
             }
-            let kept = in_order(left, workers, making, |item, made| {
+            let kept = in_order(left, workers, making, |item, (made, span)| {
                 let fate = keep(run, world, item, made, styles)?;
+                span.end(&fate);
                 pace.item_is_done();
                 progress.takes_note(run, fate)
             });

@@ -1,6 +1,7 @@
 //! `wayword generate`.
 
 mod fill;
+mod item_span;
 mod keep;
 mod pace;
 mod progress;
@@ -24,6 +25,7 @@ use crate::{
     stores,
     team::Team,
     usable,
+    watch::{self, Watch},
 };
 use fill::Workshop;
 use std::path::Path;
@@ -46,8 +48,14 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
     let out = args.out.as_deref().ok_or_else(|| {
         Error::usage("a run needs a folder", "give --out DIR, or --dry-run to see what the run would cost")
     })?;
+    let watch = Watch::start(args.spans.as_deref(), output)?;
+    watch.during(|| make(args, out, &job, watch.worker(), output))
+}
+
+/// Makes a run, or this worker's part of it.
+fn make(args: &Generate, out: &Path, job: &Job, worker: &str, output: &Output) -> Result<Exit, Error> {
     if args.workers.is_asked() {
-        return workers::run(out, &job, &args.workers, output);
+        return workers::run(out, job, &args.workers, worker, output);
     }
     stores::refuse_address(out)?;
     if wayword_queue::Plan::find(out)?.is_some() && !is_begun(out) {
@@ -56,7 +64,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
             "give --shard or --queue to make a part of it, or another --out",
         ));
     }
-    let summary = generate_into(out, &job, output)?;
+    let summary = generate_into(out, job, output)?;
     output.data(&summary, &summary);
     Ok(summary.exit)
 }
@@ -131,6 +139,7 @@ pub fn generate_into(folder: &Path, job: &Job, output: &Output) -> Result<Summar
     refuse_file(folder)?;
     let begun = is_begun(folder).then(|| RunFolder::open(folder, settings)).transpose()?;
     let id = id_of(folder, "run")?;
+    watch::is_of_run(&id);
     let calls = plan.models.open(&id, output)?;
     let Plan { items, styles, .. } = &plan;
     let lookout = Lookout::of(settings, calls.as_ref(), styles)?;

@@ -19,13 +19,13 @@ use crate::{
     settings::{Job, Settings},
     stores::RunPlace,
     team::Team,
-    usable,
+    usable, watch,
 };
 use board::Counter;
 pub(crate) use board::Way;
 use std::path::Path;
 use told::{Planned, Worked};
-use wayword_queue::{Finished, PLAN, work, worker_name};
+use wayword_queue::{Finished, PLAN, work};
 
 /// Why a worker stops before nothing is left.
 pub(super) struct Why {
@@ -33,7 +33,7 @@ pub(super) struct Why {
     exit: Exit,
 }
 
-pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, output: &Output) -> Result<Exit, Error> {
+pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, worker: &str, output: &Output) -> Result<Exit, Error> {
     let place = RunPlace::of(out)?;
     let out = place.folder();
     warn_of_no_effect(&job.settings, output);
@@ -70,7 +70,8 @@ pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, output: &Output) 
         output.data(&told, &told);
         return Ok(Exit::Done);
     }
-    let worked = make_chunks(&place, &kept, &plan, &settings, asked, output)?;
+    watch::is_of_run(&kept.run);
+    let worked = make_chunks(&place, &kept, &plan, &settings, asked, worker, output)?;
     output.data(&worked, &worked);
     Ok(worked.exit)
 }
@@ -81,11 +82,12 @@ fn make_chunks(
     plan: &Plan<'_>,
     settings: &Settings,
     asked: &AskedWorkers,
+    worker: &str,
     output: &Output,
 ) -> Result<Worked, Error> {
-    let (worker, out) = (worker_name(), place.folder());
+    let out = place.folder();
     place.take_marks(kept)?;
-    let counter = Counter::open(place, kept, &worker, asked)?;
+    let counter = Counter::open(place, kept, worker, asked)?;
     let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
     let calls = Calls::open(&job, &kept.run, output)?;
     if place.is_stored() && asked.shard.is_some() && calls.is_some() {
@@ -98,7 +100,7 @@ fn make_chunks(
     let team = Team::new(settings, calls.as_ref(), plan.platform)?.with(lookout);
     let shop = Workshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
     let _graceful = interrupt::finish_first(calls.as_ref());
-    let make = |claimed| chunk::make(out, kept, &shop, claimed, &worker, output);
+    let make = |claimed| watch::chunk(claimed, || chunk::make(out, kept, &shop, claimed, worker, output));
     let finished: Finished<Why> = counter.with(|board| place.sending(board, |board| work(board, make, interrupted)))?;
     counter.close()?;
     place.send_marks(kept)?;
