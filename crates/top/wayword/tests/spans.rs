@@ -118,10 +118,14 @@ fn a_shard_leaves_a_file_with_its_name_and_its_chunks() {
     }
 }
 
+/// Some answers are filtered, and some requests fail at first.
+fn faults() -> Faults {
+    Faults::default().with(Fault::Filtered, 0.04).with(Fault::EchoesKey, 0.2)
+}
+
 #[test]
 fn what_fails_says_of_what_kind_its_failure_is() {
-    let faults = Faults::default().with(Fault::Filtered, 0.04).with(Fault::EchoesKey, 0.2);
-    let stage = Stage::new(Behaviour { faults, ..cast() });
+    let stage = Stage::new(Behaviour { faults: faults(), ..cast() });
     let ran = stage.generate("run", &["--paths", "12", "--concurrency", "8", "--spans", "spans"]);
     assert!(matches!(ran.code, Some(0 | 3 | 7)), "{ran:?}");
     let all = spans(&stage.building.path("spans"));
@@ -147,4 +151,110 @@ fn a_run_without_models_has_items_alone_and_a_folder_that_cannot_be_made_is_refu
     let refused = building.generate("other", &[&args[..], &["--spans", "run/walks.jsonl"]].concat());
     assert!(refused.refused().contains("spans"), "{refused:?}");
     assert!(!building.path("other").exists());
+}
+
+#[cfg(not(feature = "telemetry"))]
+#[test]
+fn a_build_without_telemetry_does_not_look_for_a_collector() {
+    let building = Building::new();
+    let args = ["generate", "--paths", "1", "--style", "r2r", "--out", "run"];
+    let address = format!("http://{}", common::free_port());
+    let ran = run(building.command(&args).env("OTEL_EXPORTER_OTLP_ENDPOINT", address));
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(!ran.err.contains("collector"), "{ran:?}");
+}
+
+#[cfg(feature = "telemetry")]
+mod to_a_collector {
+    use super::*;
+    use common::collector::Collector;
+    use std::{
+        net::{Ipv4Addr, TcpListener},
+        process::Command,
+        time::{Duration, Instant},
+    };
+
+    const ENDPOINT: &str = "OTEL_EXPORTER_OTLP_ENDPOINT";
+
+    /// A run without models of which spans are sent.
+    fn sending(building: &Building, endpoint: &str) -> Command {
+        let args = ["--platform", "matterport", "--data", "data", "--episodes", EPISODES, "--style", "r2r"];
+        let mut command = building.command(&[&["generate", "--out", "run"], &args[..]].concat());
+        command.env(ENDPOINT, endpoint);
+        command
+    }
+
+    #[test]
+    fn the_same_spans_arrive_with_their_parents_and_who_sent_them() {
+        let (stage, collector) = (Stage::new(cast()), Collector::start());
+        let mut command = stage.generating("run", &["--paths", "6", "--spans", "spans"]);
+        command.env(ENDPOINT, collector.endpoint()).env("OTEL_EXPORTER_OTLP_HEADERS", "x-key=secret-of-collector");
+        let ran = run(&mut command);
+        assert!(matches!(ran.code, Some(0 | 3)) && !ran.err.contains("warning: spans"), "{ran:?}");
+        let (lines, sent) = (spans(&stage.building.path("spans")), collector.spans());
+        for name in ["worker", "item", "call"] {
+            let of_name: Vec<_> = sent.iter().filter(|span| span.name == name).collect();
+            assert_eq!(of_name.len(), named(&lines, name).len(), "{name}");
+            let is_child = |id: &[u8]| sent.iter().any(|parent| parent.span_id == id);
+            assert!(of_name.iter().all(|span| is_child(&span.parent_span_id) == (name != "worker")));
+        }
+        assert_eq!(sent.len(), lines.len());
+        let call = sent.iter().find(|span| span.name == "call").unwrap();
+        let keys: BTreeSet<&str> = call.attributes.iter().map(|attribute| attribute.key.as_str()).collect();
+        assert!(keys.is_superset(&["model", "purpose", "from_ledger", "tokens_in", "attempts"].into()), "{keys:?}");
+        let worker = named(&lines, "worker")[0]["fields"]["worker"].as_str().unwrap();
+        assert_eq!(collector.resource("service.name"), ["wayword".to_owned()].into());
+        assert_eq!(collector.resource("service.instance.id"), [worker.to_owned()].into());
+        assert_eq!(collector.resource("service.version"), [env!("CARGO_PKG_VERSION").to_owned()].into());
+        let heads = collector.heads();
+        let has = |head: &String| head.starts_with("POST /v1/traces ") && head.contains("secret-of-collector");
+        assert!(!heads.is_empty() && heads.iter().all(has), "{heads:?}");
+        assert!(!collector.holds(KEY) && !format!("{ran:?}").contains("secret-of-collector"));
+    }
+
+    #[test]
+    fn a_failed_item_is_marked_as_an_error() {
+        let (stage, collector) = (Stage::new(Behaviour { faults: faults(), ..cast() }), Collector::start());
+        let mut command = stage.generating("run", &["--paths", "12"]);
+        run(command.env(ENDPOINT, collector.endpoint()));
+        let is_error = |name: &str| {
+            let mut of_name = collector.spans().into_iter().filter(|span| span.name == name);
+            of_name.any(|span| span.status.is_some_and(|status| status.code == 2))
+        };
+        assert!(is_error("item") && is_error("call"));
+    }
+
+    #[test]
+    fn a_collector_that_is_away_is_told_once_and_holds_nobody_up() {
+        let building = Building::new();
+        let since = Instant::now();
+        let ran = run(&mut sending(&building, &format!("http://user:word@{}", common::free_port())));
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        assert_eq!(ran.err.matches("spans cannot be sent").count(), 1, "{ran:?}");
+        assert!(ran.err.contains("refused") && !ran.err.contains("word@"), "{ran:?}");
+        assert!(since.elapsed() < Duration::from_secs(20), "{:?}", since.elapsed());
+    }
+
+    #[test]
+    fn a_collector_that_never_answers_is_waited_for_a_few_seconds() {
+        let building = Building::new();
+        let silent = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let since = Instant::now();
+        let ran = run(&mut sending(&building, &format!("http://{}", silent.local_addr().unwrap())));
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        assert_eq!(ran.err.matches("spans cannot be sent").count(), 1, "{ran:?}");
+        assert!(since.elapsed() < Duration::from_secs(30), "{:?}", since.elapsed());
+    }
+
+    #[test]
+    fn what_the_environment_says_wrongly_is_told_and_the_run_goes_on() {
+        let building = Building::new();
+        let ran = run(sending(&building, "https://[::1]:1").env("OTEL_EXPORTER_OTLP_CERTIFICATE", "none.pem"));
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        assert!(ran.err.contains("none.pem"), "{ran:?}");
+        let ran = run(&mut sending(&building, "no address"));
+        assert!(ran.code == Some(0) && ran.err.contains("is no address"), "{ran:?}");
+        let ran = run(sending(&building, "no address").env("OTEL_SDK_DISABLED", "true"));
+        assert!(ran.code == Some(0) && !ran.err.contains("collector"), "{ran:?}");
+    }
 }

@@ -7,6 +7,11 @@
 
 mod chunk;
 mod lines;
+#[cfg(feature = "telemetry")]
+mod telemetry;
+#[cfg(not(feature = "telemetry"))]
+#[path = "no_telemetry.rs"]
+mod telemetry;
 
 use crate::{
     error::{Error, Exit},
@@ -15,6 +20,7 @@ use crate::{
 pub(crate) use chunk::chunk;
 use lines::Lines;
 use std::path::Path;
+use telemetry::Telemetry;
 use tracing::{Dispatch, Span, dispatcher, field::Empty, info_span, level_filters::LevelFilter};
 use tracing_subscriber::{Registry, filter::Targets, layer::SubscriberExt};
 use wayword_ledger::TARGET;
@@ -24,38 +30,40 @@ pub(crate) struct Watch {
     worker: String,
     /// `None` if nobody watches.
     to: Option<Dispatch>,
+    telemetry: Option<Telemetry>,
 }
 
 impl Watch {
-    /// Writes spans into a file of this worker in the folder, if one is given.
+    /// Writes spans into a file of this worker in the folder, if one is given, and sends them to the collector that the
+    /// environment names.
     ///
     /// # Errors
     /// When the file cannot be made, unless the disk is full.
     pub(crate) fn start(spans: Option<&Path>, output: &Output) -> Result<Self, Error> {
         let worker = wayword_queue::worker_name();
         let lines = spans.map(|folder| Lines::begin(folder, &worker, output)).transpose()?.flatten();
-        let to = lines.map(|lines| {
+        let telemetry = Telemetry::start(&worker, output);
+        let is_asked = lines.is_some() || telemetry.is_some();
+        let to = is_asked.then(|| {
             let ours = Targets::new().with_target(TARGET, LevelFilter::INFO);
-            Dispatch::new(Registry::default().with(ours).with(lines))
+            let sent = telemetry.as_ref().map(Telemetry::layer);
+            Dispatch::new(Registry::default().with(ours).with(lines).with(sent))
         });
-        Ok(Self { worker, to })
+        Ok(Self { worker, to, telemetry })
     }
 
-    /// The name of this worker, which is that of its file.
-    pub(crate) fn worker(&self) -> &str {
-        &self.worker
-    }
-
-    /// Does a worker's work within its span.
-    pub(crate) fn during(&self, work: impl FnOnce() -> Result<Exit, Error>) -> Result<Exit, Error> {
-        match &self.to {
-            Some(to) => dispatcher::with_default(to, || within(&self.worker, work)),
-            None => work(),
+    /// Does a worker's work within its span. The work is given the name of the worker, which is that of its file.
+    pub(crate) fn during(self, work: impl FnOnce(&str) -> Result<Exit, Error>) -> Result<Exit, Error> {
+        let Some(to) = self.to else { return work(&self.worker) };
+        let ended = dispatcher::with_default(&to, || within(&self.worker, work));
+        if let Some(telemetry) = self.telemetry {
+            telemetry.end();
         }
+        ended
     }
 }
 
-fn within(worker: &str, work: impl FnOnce() -> Result<Exit, Error>) -> Result<Exit, Error> {
+fn within(worker: &str, work: impl FnOnce(&str) -> Result<Exit, Error>) -> Result<Exit, Error> {
     let span = info_span!(
         target: TARGET,
         "worker",
@@ -65,7 +73,7 @@ fn within(worker: &str, work: impl FnOnce() -> Result<Exit, Error>) -> Result<Ex
         exit_code = Empty,
         otel.status_code = Empty,
     );
-    let ended = span.in_scope(work);
+    let ended = span.in_scope(|| work(worker));
     let exit = ended.as_ref().map_or_else(Error::exit_code, |exit| *exit);
     span.record("exit_code", exit as u8);
     if !matches!(exit, Exit::Done | Exit::WithLoss) {

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+#[cfg(feature = "telemetry")]
+pub(crate) mod collector;
 pub(crate) mod scans;
 
 use serde_json::Value;

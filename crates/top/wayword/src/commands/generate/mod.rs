@@ -49,7 +49,7 @@ pub(super) fn run(args: &Generate, output: &Output) -> Result<Exit, Error> {
         Error::usage("a run needs a folder", "give --out DIR, or --dry-run to see what the run would cost")
     })?;
     let watch = Watch::start(args.spans.as_deref(), output)?;
-    watch.during(|| make(args, out, &job, watch.worker(), output))
+    watch.during(|worker| make(args, out, &job, worker, output))
 }
 
 /// Makes a run, or this worker's part of it.
