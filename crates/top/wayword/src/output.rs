@@ -147,7 +147,6 @@ impl Output {
     }
 
     /// A progress bar for bytes, whose length is set later; hidden if standard error is not a terminal.
-    #[cfg(feature = "local")]
     #[must_use]
     pub fn bytes(&self) -> ProgressBar {
         self.bar(0, "{prefix} {bar:32} {bytes}/{total_bytes}  {bytes_per_sec}{left}")
