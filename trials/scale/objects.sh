@@ -4,7 +4,7 @@
 #
 #     trials/scale/objects.sh FOLDER
 #
-# Needs Python 3, Node with npm, and Rust's toolchain.
+# Needs Python 3, Node with npm, PostgreSQL's programs, and Rust's toolchain.
 set -euo pipefail
 folder=$(realpath -m "${1:?"say where the simulators are to be kept: trials/scale/objects.sh FOLDER"}")
 cd "$(dirname "$0")/../.."
@@ -62,5 +62,7 @@ python3 trials/scale/container.py "$blob" wayword
 WAYWORD_TEST_S3=s3://wayword/tests WAYWORD_TEST_AZURE=az://wayword/tests \
     cargo test -p wayword-queue --features cloud --locked --test cloud -- "${@:2}"
 # Runs whose workers send what they make.
-WAYWORD_TEST_S3=s3://wayword/runs \
-    cargo test -p wayword --no-default-features --features queue,cloud --locked --test workers in_stores -- "${@:2}"
+for store in s3://wayword/runs az://wayword/runs; do
+    WAYWORD_TEST_STORE=$store WAYWORD_TEST_POSTGRES=1 \
+        cargo test -p wayword --no-default-features --features queue,cloud --locked --test workers in_stores -- "${@:2}"
+done

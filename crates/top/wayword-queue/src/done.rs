@@ -1,6 +1,6 @@
 //! What became of a chunk: its mark in the run folder.
 
-use crate::{Plan, QueueError, put_new};
+use crate::{Plan, QueueError, folder::remove, put_new};
 use serde::{Deserialize, Serialize};
 use std::{
     collections::BTreeMap,
@@ -117,28 +117,30 @@ pub fn dead_of(folder: &Path, chunk: usize) -> Result<Option<String>, QueueError
     from_file(&dead_path(folder, chunk))
 }
 
-/// Makes chunks open again whose failures, or whose death, have `reason` in their words. Their results stay, and the next
-/// worker tries what failed. Returns their numbers.
+/// The chunks whose failures, or whose death, have `reason` in their words.
 ///
 /// # Errors
-/// When a mark cannot be read or removed.
-pub fn reopen(folder: &Path, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
-    let mut open = Vec::new();
+/// When a mark cannot be read.
+pub fn failing(folder: &Path, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
+    let mut failing = Vec::new();
     for chunk in 0..plan.chunks() {
         let failed = done_of(folder, chunk)?.is_some_and(|done| done.failed.keys().any(|why| why.contains(reason)));
-        let dead = dead_of(folder, chunk)?.is_some_and(|why| why.contains(reason));
-        if !failed && !dead {
-            continue;
+        if failed || dead_of(folder, chunk)?.is_some_and(|why| why.contains(reason)) {
+            failing.push(chunk);
         }
-        for mark in [done_path(folder, chunk), dead_path(folder, chunk), crate::shard::tries_path(folder, chunk)] {
-            match fs::remove_file(&mark) {
-                Err(error) if error.kind() != ErrorKind::NotFound => {
-                    return Err(QueueError::Io { path: mark, doing: "remove", source: error });
-                }
-                _ => {}
-            }
-        }
-        open.push(chunk);
     }
-    Ok(open)
+    Ok(failing)
+}
+
+/// Makes chunks open again. Their results stay, and the next worker tries what failed.
+///
+/// # Errors
+/// When a mark cannot be removed.
+pub fn reopen(folder: &Path, chunks: &[usize]) -> Result<(), QueueError> {
+    for chunk in chunks {
+        for mark in [done_path(folder, *chunk), dead_path(folder, *chunk), crate::shard::tries_path(folder, *chunk)] {
+            remove(&mark)?;
+        }
+    }
+    Ok(())
 }

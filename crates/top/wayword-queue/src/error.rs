@@ -65,6 +65,16 @@ impl QueueError {
         move |source| Self::Io { path, doing, source }
     }
 
+    /// Whether a store refuses this worker's key.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        match self {
+            #[cfg(feature = "cloud")]
+            Self::Cloud(error) => error.is_refused(),
+            _ => false,
+        }
+    }
+
     /// Whether the disk or the database failed, so that the same command may work later.
     #[must_use]
     pub fn is_lost(&self) -> bool {

@@ -76,6 +76,14 @@ pub fn put_whole(path: &Path, bytes: &[u8]) -> Result<(), QueueError> {
     done.map_err(QueueError::io(path, "write"))
 }
 
+/// Removes a file, if it is there.
+pub(crate) fn remove(path: &Path) -> Result<(), QueueError> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::io(path, "remove")(error)),
+        _ => Ok(()),
+    }
+}
+
 fn sync_folder_of(path: &Path) -> io::Result<()> {
     match path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) => sync_folder(folder),

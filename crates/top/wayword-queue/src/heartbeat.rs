@@ -6,6 +6,7 @@
 use crate::{
     QueueError,
     done::{from_file, to_bytes},
+    folder::remove,
     put_new, put_whole,
 };
 use serde::{Deserialize, Serialize};
@@ -98,12 +99,7 @@ impl Heart {
             }
         }
         // What a dead worker left is removed, and of those that do so at the same moment one writes first.
-        match fs::remove_file(&path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                return Err(QueueError::Io { path, doing: "remove", source: error });
-            }
-            _ => {}
-        }
+        remove(&path)?;
         let bytes = to_bytes(&path, &beat)?;
         if !put_new(&path, &bytes)? {
             let who = from_file::<Beat>(&path)?.map_or_else(|| "another worker".to_owned(), |other| other.worker);

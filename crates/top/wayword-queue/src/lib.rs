@@ -23,7 +23,7 @@ mod shard;
 mod work;
 
 pub use board::{Board, Claimed, Left};
-pub use done::{Done, chunk_folder, dead_of, dead_path, done_of, done_path, reopen};
+pub use done::{Done, chunk_folder, dead_of, dead_path, done_of, done_path, failing, reopen};
 pub use error::QueueError;
 pub use folder::{put_new, put_whole, sync_tree};
 pub use heartbeat::{Alive, Beat, FRESH, Heart, beats, worker_name};

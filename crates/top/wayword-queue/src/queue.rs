@@ -1,6 +1,6 @@
 //! Chunks in PostgreSQL: a worker that asks gets one that is open. The rules are those of [`crate::Row`].
 
-use crate::{Board, Claimed, Done, Left, Plan, QueueError, TRIES, reopen};
+use crate::{Board, Claimed, Done, Left, Plan, QueueError, TRIES, failing, reopen};
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, mpsc},
@@ -279,25 +279,32 @@ impl Queue {
         Ok(marked)
     }
 
-    /// Makes chunks open again whose failures, or whose death, have `reason` in their words. Returns their numbers.
+    /// The chunks whose failures, or whose death, have `reason` in their words.
+    ///
+    /// # Errors
+    /// When the database cannot be used or a mark cannot be read.
+    pub fn failing(&self, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
+        let mut failing = failing(&self.folder, plan, reason)?;
+        // Why a chunk was given up is in the database alone.
+        failing.extend(self.look()?.dead.into_iter().filter(|(_, why)| why.contains(reason)).map(|(chunk, _)| chunk));
+        failing.sort_unstable();
+        failing.dedup();
+        Ok(failing)
+    }
+
+    /// Makes chunks open again.
     ///
     /// # Errors
     /// When the database cannot be used or a mark cannot be removed.
-    pub fn retry(&self, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
-        // The marks of dead chunks are in the database alone.
-        let dead = self.look()?.dead.into_iter().filter(|(_, why)| why.contains(reason)).map(|(chunk, _)| chunk);
-        let dead: Vec<usize> = dead.collect();
-        let mut open = reopen(&self.folder, plan, reason)?;
-        open.extend(dead);
-        open.sort_unstable();
-        open.dedup();
-        let numbers: Vec<i32> = open.iter().map(|chunk| number(*chunk)).collect();
+    pub fn reopen(&self, chunks: &[usize]) -> Result<(), QueueError> {
+        reopen(&self.folder, chunks)?;
+        let numbers: Vec<i32> = chunks.iter().map(|chunk| number(*chunk)).collect();
         self.pool.with("make chunks open again", |connection| {
             let sql = "UPDATE wayword_queue.chunks SET state = 'open', tries = 0, done = NULL
                        WHERE run = $1 AND chunk = ANY($2) AND state IN ('done', 'dead')";
             connection.rows(sql, &[&self.run, &numbers])
         })?;
-        Ok(open)
+        Ok(())
     }
 }
 
@@ -340,7 +347,11 @@ impl Board for Queue {
         let found = self
             .pool
             .with("ask for a chunk", |connection| connection.rows(IS_DONE, &[&self.run, &chunk, &claimed.epoch]))?;
-        Ok(!found.is_empty())
+        if found.is_empty() {
+            return Ok(false);
+        }
+        done.put(&self.folder)?;
+        Ok(true)
     }
 
     fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {

@@ -13,7 +13,7 @@ use std::{
     },
 };
 use tempfile::TempDir;
-use wayword_queue::cloud::{Bucket, CloudError, Fetched, INDEX, Sent, is_url};
+use wayword_queue::cloud::{Bucket, CloudError, Fetched, INDEX, Sent};
 
 /// A bucket, and the folder that it may be in.
 struct Place {
@@ -309,16 +309,6 @@ fn an_address_with_a_secret_is_refused_and_not_repeated() {
         let text = format!("{error} {error:?}");
         assert!(matches!(error, CloudError::Address { .. }), "{text}");
         assert!(!text.contains("hunter2") && text.contains("hint"), "{text}");
-    }
-}
-
-#[test]
-fn an_address_of_a_store_is_told_from_a_folder() {
-    for url in ["s3://b/p", "S3://b", "gs://b", "az://c/p", "abfss://c@a.dfs.core.windows.net/p", "file:///tmp/x"] {
-        assert!(is_url(url), "{url}");
-    }
-    for folder in ["runs/big", "/abs", "C:\\runs", "s3:", "http://example.org", "name://x", ""] {
-        assert!(!is_url(folder), "{folder}");
     }
 }
 

@@ -223,6 +223,7 @@ impl Error {
             // Another worker has the shard, or took this one's over.
             Self::Queue(QueueError::Busy { .. } | QueueError::TakenOver(_)) => Exit::Busy,
             Self::Interrupted => Exit::Interrupted,
+            Self::Queue(error) if error.is_refused() => Exit::Stopped,
             error if error.is_of_the_disk() => Exit::Lost,
             error => match error.failure() {
                 Some(Failure::Lost) => Exit::Lost,

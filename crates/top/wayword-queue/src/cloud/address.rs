@@ -23,8 +23,7 @@ const FORMS: &str = "write s3://BUCKET/PREFIX, gs://BUCKET/PREFIX, az://CONTAINE
 const REQUEST: &str = "300 seconds";
 
 /// Whether a text is an address of an object store, and not a folder.
-#[must_use]
-pub fn is_url(text: &str) -> bool {
+fn is_url(text: &str) -> bool {
     text.split_once("://").is_some_and(|(scheme, _)| SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)))
 }
 

@@ -137,6 +137,18 @@ impl CloudError {
     /// Whether the network or the store failed, so that the same command may work later.
     #[must_use]
     pub fn is_lost(&self) -> bool {
-        matches!(self, Self::Network { .. } | Self::Changed { .. })
+        match self {
+            Self::Network { .. } | Self::Changed { .. } => true,
+            Self::Local { source, .. } => {
+                matches!(source.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether the store does not know the credentials, or no longer.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        matches!(self, Self::Credentials { .. } | Self::Permission { .. })
     }
 }

@@ -37,7 +37,6 @@ mod send;
 mod stored_run;
 mod trouble;
 
-pub use address::is_url;
 pub use bucket::{Bucket, Entry, MOST_OBJECTS};
 pub use error::CloudError;
 pub use fetch::{Fetched, INDEX};

@@ -1,16 +1,19 @@
 //! A run whose folder is in an object store.
 
-use super::{Bucket, Fetched};
+use super::{Bucket, CloudError};
 use crate::{
-    Board, Claimed, Done, Left, Plan, QueueError, chunk_folder,
-    done::{CHUNKS, done_path},
+    Board, Claimed, Done, Left, PLAN, Plan, QueueError, chunk_folder,
+    done::{CHUNKS, done_of, done_path, from_file, to_bytes},
+    folder::remove,
     put_whole,
 };
 use std::{
-    collections::BTreeSet,
+    collections::{BTreeMap, BTreeSet},
     fs,
     io::ErrorKind,
     path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
+    time::{SystemTime, UNIX_EPOCH},
 };
 
 /// Where marks are: as in the folder. What is listed often must not lie among the results.
@@ -19,11 +22,11 @@ const MARKS: &str = CHUNKS;
 const RESULTS: &str = "results";
 /// Largest file that is written once, bytes: a plan of ten million items.
 const MOST_BYTES: u64 = 1 << 30;
-/// Largest run that is fetched, bytes.
-const MOST_RUN_BYTES: u64 = 1 << 44;
+/// Largest results of a chunk that are fetched, bytes.
+const MOST_CHUNK_BYTES: u64 = 1 << 40;
 
 /// A run in an object store. A worker works in a folder of its machine, sends each chunk's results when they are finished, and
-/// then says so in the store by a mark, which is written once.
+/// then says so in the store by a mark. Each try has a place of its own for its results, which the mark names.
 #[derive(Debug)]
 pub struct StoredRun {
     bucket: Bucket,
@@ -49,54 +52,65 @@ impl StoredRun {
         Ok(self.bucket.check_put_new()?)
     }
 
-    /// Takes a file from the store, if it is there.
+    /// Fetches a file, if the store has it.
     ///
     /// # Errors
     /// When the store or the folder cannot be used.
-    pub fn take(&self, name: &str) -> Result<(), QueueError> {
+    pub fn fetch_file(&self, name: &str) -> Result<(), QueueError> {
         match self.bucket.get(name, MOST_BYTES)? {
             Some(bytes) => put_whole(&self.folder.join(name), &bytes),
             None => Ok(()),
         }
     }
 
-    /// Sends a file that is written once, and takes the store's if another worker was first.
+    /// Sends a file that is written once, and fetches the store's if another worker was first.
     ///
     /// # Errors
     /// When the file cannot be read or the store cannot be used.
-    pub fn agree(&self, name: &str) -> Result<(), QueueError> {
+    pub fn publish(&self, name: &str) -> Result<(), QueueError> {
         let path = self.folder.join(name);
         let bytes = fs::read(&path).map_err(QueueError::io(&path, "read"))?;
         match self.bucket.put_new(name, bytes)? {
             true => Ok(()),
-            false => self.take(name),
+            false => self.fetch_file(name),
         }
     }
 
-    /// Takes the marks of finished chunks that are not here yet. Returns the numbers of all that are there.
+    /// The numbers of the chunks that have a mark in the store.
+    fn marked(&self, plan: &Plan) -> Result<BTreeSet<usize>, QueueError> {
+        let there: BTreeSet<String> = self.bucket.list(MARKS)?.into_iter().map(|entry| entry.name).collect();
+        Ok((0..plan.chunks()).filter(|chunk| there.contains(&self.mark(*chunk))).collect())
+    }
+
+    /// Fetches the marks of finished chunks, in place of those that are here.
     ///
     /// # Errors
     /// When the store or the folder cannot be used.
-    pub fn take_marks(&self, plan: &Plan) -> Result<BTreeSet<usize>, QueueError> {
-        let there: BTreeSet<String> = self.bucket.list(MARKS)?.into_iter().map(|entry| entry.name).collect();
-        let done: BTreeSet<usize> = (0..plan.chunks()).filter(|chunk| there.contains(&self.mark(*chunk))).collect();
-        for chunk in &done {
-            if !done_path(&self.folder, *chunk).exists() {
-                self.take(&self.mark(*chunk))?;
+    pub fn fetch_marks(&self, plan: &Plan) -> Result<(), QueueError> {
+        let marked = self.marked(plan)?;
+        for chunk in 0..plan.chunks() {
+            match marked.contains(&chunk) {
+                true => self.fetch_file(&self.mark(chunk))?,
+                // It was opened again.
+                false => remove(&done_path(&self.folder, chunk))?,
             }
         }
-        Ok(done)
+        Ok(())
     }
 
-    /// Sends the marks that are here and not in the store: their worker was killed between the two.
+    /// Sends the marks of this folder that the store lacks, because the worker of a queue was killed between the two. The marks of
+    /// this folder have to be those of the queue.
     ///
     /// # Errors
     /// When the store or the folder cannot be used.
     pub fn send_marks(&self, plan: &Plan) -> Result<(), QueueError> {
-        let done = self.take_marks(plan)?;
-        (0..plan.chunks())
-            .filter(|chunk| !done.contains(chunk) && done_path(&self.folder, *chunk).exists())
-            .try_for_each(|chunk| self.agree(&self.mark(chunk)))
+        let marked = self.marked(plan)?;
+        for chunk in (0..plan.chunks()).filter(|chunk| !marked.contains(chunk)) {
+            if let Some(done) = done_of(&self.folder, chunk)? {
+                self.put(&done)?;
+            }
+        }
+        Ok(())
     }
 
     /// Removes the mark of a chunk, so that it is made again.
@@ -107,25 +121,67 @@ impl StoredRun {
         Ok(self.bucket.remove(&self.mark(chunk))?)
     }
 
-    /// Fetches the whole run: plan, marks and results. Continues where it was stopped.
+    /// Fetches the plan, the marks and the results that these name into the folder, and returns the plan. Continues where it was
+    /// stopped.
     ///
     /// # Errors
-    /// When the store or the folder cannot be used.
-    pub fn fetch(&self, plan: &Plan, progress: &dyn Fn(u64, u64)) -> Result<Fetched, QueueError> {
-        // The marks first: what has one is there as a whole.
-        self.take_marks(plan)?;
-        Ok(self.bucket.fetch_folder(RESULTS, &self.folder.join(CHUNKS), MOST_RUN_BYTES, progress)?)
+    /// When there is no run, the folder has another one, or the store or the folder cannot be used.
+    pub fn fetch(&self, progress: &dyn Fn(usize, usize)) -> Result<Plan, QueueError> {
+        let broken = |problem: &str| QueueError::Broken { path: self.folder.clone(), problem: problem.to_owned() };
+        let Some(bytes) = self.bucket.get(PLAN, MOST_BYTES)? else {
+            return Err(QueueError::NoPlan(self.bucket.to_string().into()));
+        };
+        let path = self.folder.join(PLAN);
+        match fs::read(&path) {
+            Ok(before) if before != bytes => return Err(broken("this folder has another run")),
+            Ok(_) => {}
+            Err(_) => put_whole(&path, &bytes)?,
+        }
+        let plan = Plan::of(&self.folder)?;
+        self.fetch_marks(&plan)?;
+        for chunk in 0..plan.chunks() {
+            if let Some(done) = done_of(&self.folder, chunk)? {
+                let local = chunk_folder(&self.folder, chunk, done.epoch);
+                self.bucket.fetch_folder(&self.results(&local), &local, MOST_CHUNK_BYTES, &|_, _| ())?;
+            }
+            progress(chunk + 1, plan.chunks());
+        }
+        Ok(plan)
     }
 
     /// A board that sends results before it says that a chunk is finished.
     #[must_use]
     pub fn sending<'a>(&'a self, board: &'a dyn Board) -> Sending<'a> {
-        Sending { run: self, board }
+        Sending { run: self, board, tries: Mutex::default() }
     }
 
     /// The name of a chunk's mark, here and in the store.
     fn mark(&self, chunk: usize) -> String {
         name_in(&self.folder, &done_path(&self.folder, chunk))
+    }
+
+    /// Where the results of a try are, in the store.
+    fn results(&self, local: &Path) -> String {
+        format!("{RESULTS}/{}", name_in(&self.folder.join(CHUNKS), local))
+    }
+
+    /// Makes the mark of a chunk, and returns whether it is this one. A later claim of a queue takes the place of an earlier one,
+    /// whose mark was left behind when the chunk was opened again.
+    fn put(&self, done: &Done) -> Result<bool, QueueError> {
+        let (name, path) = (self.mark(done.chunk), done_path(&self.folder, done.chunk));
+        let bytes = to_bytes(&path, done)?;
+        if self.bucket.put_new(&name, bytes.clone())? {
+            return Ok(true);
+        }
+        self.fetch_file(&name)?;
+        match from_file::<Done>(&path)? {
+            Some(there) if there.epoch == done.epoch => Ok(true),
+            Some(there) if is_try(done.epoch) || there.epoch > done.epoch => Ok(false),
+            _ => {
+                self.bucket.put(&name, bytes)?;
+                Ok(true)
+            }
+        }
     }
 }
 
@@ -135,25 +191,60 @@ fn name_in(folder: &Path, path: &Path) -> String {
     parts.map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
 }
 
+/// The number of a try of a shard, which has no claims: microseconds since 1970. Two workers of one part, which know nothing of each
+/// other in a store, get two places for their results.
+fn new_try() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(since.as_micros()).unwrap_or(i64::MAX).max(FIRST_TRY)
+}
+
+/// No chunk is claimed so often.
+const FIRST_TRY: i64 = 1 << 40;
+
+/// Whether this is the number of a try, and not the claim of a queue.
+fn is_try(epoch: i64) -> bool {
+    epoch >= FIRST_TRY
+}
+
 /// A board whose chunks' results go into an object store.
 pub struct Sending<'a> {
     run: &'a StoredRun,
     board: &'a dyn Board,
+    /// The claims of the board, by chunk.
+    tries: Mutex<BTreeMap<usize, Claimed>>,
+}
+
+impl Sending<'_> {
+    /// The claim as the board knows it.
+    fn on_board(&self, claimed: Claimed) -> Claimed {
+        let tries = self.tries.lock().unwrap_or_else(PoisonError::into_inner);
+        tries.get(&claimed.chunk).copied().unwrap_or(claimed)
+    }
+
+    fn send(&self, claimed: Claimed, results: &Path) -> Result<(), QueueError> {
+        let sent = self.run.bucket.send_folder(results, &self.run.results(results));
+        sent.map(drop).or_else(|error: CloudError| {
+            // It is no fault of the chunk.
+            self.board.hand_back(self.on_board(claimed))?;
+            Err(error.into())
+        })
+    }
 }
 
 impl Board for Sending<'_> {
     fn take(&self) -> Result<Option<Claimed>, QueueError> {
-        self.board.take()
+        let Some(taken) = self.board.take()? else { return Ok(None) };
+        self.tries.lock().unwrap_or_else(PoisonError::into_inner).insert(taken.chunk, taken);
+        Ok(Some(if taken.epoch == 0 { Claimed { epoch: new_try(), ..taken } } else { taken }))
     }
 
     fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
         let results = chunk_folder(&self.run.folder, claimed.chunk, claimed.epoch);
-        let name = name_in(&self.run.folder.join(CHUNKS), &results);
-        self.run.bucket.send_folder(&results, &format!("{RESULTS}/{name}"))?;
-        let holds = self.board.complete(claimed, done)?;
-        if holds {
-            // A second worker of the same part has made the same results.
-            self.run.agree(&self.run.mark(claimed.chunk))?;
+        self.send(claimed, &results)?;
+        let holds = self.board.complete(self.on_board(claimed), done)? && self.run.put(done)?;
+        if !is_try(claimed.epoch) {
+            // The queue knows what is done, also after a chunk was opened again. A mark that stays here does not.
+            remove(&done_path(&self.run.folder, claimed.chunk))?;
         }
         match fs::remove_dir_all(&results) {
             Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::io(&results, "remove")(error)),
@@ -162,11 +253,11 @@ impl Board for Sending<'_> {
     }
 
     fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {
-        self.board.hand_back(claimed)
+        self.board.hand_back(self.on_board(claimed))
     }
 
     fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError> {
-        self.board.give_up(claimed, reason)
+        self.board.give_up(self.on_board(claimed), reason)
     }
 
     fn left(&self) -> Result<Left, QueueError> {
@@ -177,62 +268,84 @@ impl Board for Sending<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Beat, FRESH, Heart, PLAN, Part, Shard, done_of};
-
-    #[test]
-    fn what_a_worker_sends_is_fetched_as_it_was_and_a_second_worker_finds_nothing_to_do() {
-        let (there, first, second, all) = (folder(), folder(), folder(), folder());
-        let address = format!("file://{}", there.path().display());
-        let plan = Plan::new("r".into(), 1, String::new(), vec![String::new(); 3]);
-        let run = StoredRun::open(&address, first.path()).unwrap();
-        run.check().unwrap();
-        plan.put(first.path()).unwrap();
-        run.agree(PLAN).unwrap();
-        assert_eq!(make_all(&run, &plan), [0, 1, 2]);
-        assert!(!chunk_folder(first.path(), 0, 0).exists(), "a machine's disk need not hold the run");
-
-        // Another plan is not taken: the store's counts.
-        let other = StoredRun::open(&address, second.path()).unwrap();
-        Plan::new("other".into(), 1, String::new(), Vec::new()).put(second.path()).unwrap();
-        other.agree(PLAN).unwrap();
-        assert_eq!(Plan::of(second.path()).unwrap(), plan);
-        assert_eq!(other.take_marks(&plan).unwrap().len(), 3);
-        assert!(make_all(&other, &plan).is_empty());
-
-        other.reopen(1).unwrap();
-        let whole = StoredRun::open(&address, all.path()).unwrap();
-        assert_eq!(whole.fetch(&plan, &|_, _| ()).unwrap().files, 3);
-        for chunk in [0, 2] {
-            assert_eq!(done_of(all.path(), chunk).unwrap().unwrap().chunk, chunk);
-            assert_eq!(
-                fs::read_to_string(chunk_folder(all.path(), chunk, 0).join("texts")).unwrap(),
-                chunk.to_string()
-            );
-        }
-        assert!(done_of(all.path(), 1).unwrap().is_none(), "it is to be made again");
-        // A worker that was killed before it sent a mark: the next one does.
-        Done { chunk: 1, ..Done::default() }.put(second.path()).unwrap();
-        other.send_marks(&plan).unwrap();
-        assert_eq!(whole.take_marks(&plan).unwrap().len(), 3);
-    }
+    use crate::{Beat, FRESH, Heart, Part, Shard};
 
     fn folder() -> tempfile::TempDir {
         tempfile::tempdir().unwrap()
     }
 
-    fn make_all(run: &StoredRun, plan: &Plan) -> Vec<usize> {
-        let part = Part { k: 0, n: 1 };
+    fn plan() -> Plan {
+        Plan::new("r".into(), 1, String::new(), vec![String::new(); 3])
+    }
+
+    /// Makes what is left, and returns the numbers of the chunks and which of them counted.
+    fn make_all(run: &StoredRun, text: &str) -> Vec<(usize, bool)> {
+        let (plan, part) = (plan(), Part { k: 0, n: 1 });
         let beat = Beat { worker: "w".into(), token: "t".into(), part: String::new() };
         let heart = Heart::start(&run.folder, &part.name(), beat, FRESH, |_| false).unwrap();
-        let shard = Shard::new(&run.folder, plan, part, &heart);
+        let shard = Shard::new(&run.folder, &plan, part, &heart);
         let board = run.sending(&shard);
         let mut made = Vec::new();
         while let Some(claimed) = board.take().unwrap() {
-            let text = chunk_folder(&run.folder, claimed.chunk, claimed.epoch).join("texts");
-            fs::write(text, claimed.chunk.to_string()).unwrap();
-            assert!(board.complete(claimed, &Done { chunk: claimed.chunk, ..Done::default() }).unwrap());
-            made.push(claimed.chunk);
+            let results = chunk_folder(&run.folder, claimed.chunk, claimed.epoch);
+            fs::create_dir_all(&results).unwrap();
+            fs::write(results.join("texts"), text).unwrap();
+            let done = Done { chunk: claimed.chunk, epoch: claimed.epoch, ..Done::default() };
+            made.push((claimed.chunk, board.complete(claimed, &done).unwrap()));
+            assert!(!results.exists(), "a machine's disk need not hold the run");
         }
         made
+    }
+
+    #[test]
+    fn what_workers_send_is_fetched_as_the_first_of_them_made_it() {
+        let (there, first, second, all) = (folder(), folder(), folder(), folder());
+        let address = format!("file://{}", there.path().display());
+        let [run, other, whole] =
+            [&first, &second, &all].map(|folder| StoredRun::open(&address, folder.path()).unwrap());
+        run.check().unwrap();
+        plan().put(first.path()).unwrap();
+        run.publish(PLAN).unwrap();
+        // Another plan is not sent: the store's counts.
+        Plan::new("other".into(), 1, String::new(), Vec::new()).put(second.path()).unwrap();
+        other.publish(PLAN).unwrap();
+        assert_eq!(Plan::of(second.path()).unwrap(), plan());
+
+        assert_eq!(make_all(&run, "first"), [(0, true), (1, true), (2, true)]);
+        // A worker of the same part that knows nothing of the first one: its results do not count.
+        assert_eq!(make_all(&other, "second"), [(0, false), (1, false), (2, false)]);
+        other.reopen(1).unwrap();
+        other.fetch_marks(&plan()).unwrap();
+        assert_eq!(make_all(&other, "second"), [(1, true)]);
+
+        let texts = || {
+            whole.fetch(&|_, _| ()).unwrap();
+            (0..3)
+                .map(|chunk| {
+                    let done = done_of(all.path(), chunk).unwrap()?;
+                    Some(fs::read_to_string(chunk_folder(all.path(), chunk, done.epoch).join("texts")).unwrap())
+                })
+                .collect::<Vec<_>>()
+        };
+        let of = |text: &str| Some(text.to_owned());
+        assert_eq!(texts(), [of("first"), of("second"), of("first")]);
+        other.reopen(2).unwrap();
+        assert_eq!(texts(), [of("first"), of("second"), None], "what is to be made again is not there");
+    }
+
+    #[test]
+    fn a_later_claim_of_a_queue_takes_the_place_of_an_earlier_one() {
+        let (there, here) = (folder(), folder());
+        let run = StoredRun::open(&format!("file://{}", there.path().display()), here.path()).unwrap();
+        let done = |epoch| Done { epoch, ..Done::default() };
+        let put = |epoch| run.put(&done(epoch)).unwrap();
+        assert_eq!([put(2), put(2), put(1), put(3), put(2)], [true, true, false, true, false]);
+        run.fetch_marks(&plan()).unwrap();
+        assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
+        // What the queue says is finished, and the store does not.
+        run.reopen(0).unwrap();
+        run.send_marks(&plan()).unwrap();
+        run.fetch_marks(&plan()).unwrap();
+        assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
     }
 }

@@ -35,7 +35,7 @@ pub use models::{Models, ModelsCommand};
 pub use perceive::Perceive;
 pub use pictures::Pictured;
 pub use robustness::Robustness;
-pub use runs::{Runs, RunsCommand, RunsDatabase, RunsMerge, RunsRetry, RunsStatus};
+pub use runs::{Runs, RunsCommand, RunsDatabase, RunsMerge, RunsQueue, RunsRetry, RunsStatus};
 pub use similarity::{By, Similarity, Tokens};
 pub use steps::AskedSteps;
 pub use study::{

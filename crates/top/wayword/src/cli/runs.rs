@@ -32,6 +32,17 @@ pub enum RunsCommand {
     Database(RunsDatabase),
 }
 
+/// The queue of a run.
+#[derive(Debug, Args)]
+pub struct RunsQueue {
+    /// The database of a run in an object store. A run in a folder names its own.
+    #[arg(long, value_name = "DATABASE")]
+    pub queue: Option<String>,
+    /// Environment variable that holds the password of the database.
+    #[arg(long, value_name = "NAME")]
+    pub password_env: Option<String>,
+}
+
 /// `wayword runs status`.
 #[derive(Debug, Args)]
 pub struct RunsStatus {
@@ -43,9 +54,9 @@ pub struct RunsStatus {
     /// Print it as Prometheus reads it (text format), for the textfile collector of a node exporter.
     #[arg(long, conflicts_with = "watch")]
     pub prometheus: bool,
-    /// Environment variable that holds the password of the queue's database.
-    #[arg(long, value_name = "NAME")]
-    pub password_env: Option<String>,
+    /// Its queue.
+    #[command(flatten)]
+    pub database: RunsQueue,
 }
 
 /// `wayword runs merge`.
@@ -69,9 +80,9 @@ pub struct RunsRetry {
     /// Words of the reason, as `wayword runs status` shows it.
     #[arg(long, value_name = "WORDS")]
     pub reason: String,
-    /// Environment variable that holds the password of the queue's database.
-    #[arg(long, value_name = "NAME")]
-    pub password_env: Option<String>,
+    /// Its queue.
+    #[command(flatten)]
+    pub database: RunsQueue,
 }
 
 /// `wayword runs database`.

@@ -3,7 +3,7 @@
 use super::{
     Plan,
     bill::{Bill, Load, picture_tokens},
-    seen::{Different, Seen},
+    views::{Different, Views},
 };
 use crate::{
     count::count,
@@ -108,7 +108,7 @@ impl Estimate {
         let settings = &plan.job.settings;
         let prompts = prompts(settings)?;
         let mut estimate = Self { questions: questions(settings), ..Self::default() };
-        let (mut all, mut here, mut apart) = (Seen::default(), Seen::default(), Different::default());
+        let (mut all, mut here, mut apart) = (Views::default(), Views::default(), Different::default());
         let mut writing = Load::default();
         for (number, item) in items.enumerate() {
             if chunk.is_some_and(|chunk| number.is_multiple_of(chunk)) {

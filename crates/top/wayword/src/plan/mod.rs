@@ -4,7 +4,7 @@
 mod bill;
 mod estimate;
 mod inputs;
-mod seen;
+mod views;
 
 use crate::{
     calls::Calls,
@@ -112,7 +112,13 @@ impl<'a> Models<'a> {
     /// # Errors
     /// When the ledger cannot be opened.
     pub fn open(&self, run: &str, output: &Output) -> Result<Option<Calls>, Error> {
-        if self.prices.is_empty() { Ok(None) } else { Calls::open(self.job, run, output) }
+        if self.is_empty() { Ok(None) } else { Calls::open(self.job, run, output) }
+    }
+
+    /// Whether no model takes part.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.prices.is_empty()
     }
 
     /// What a model costs, if that is known.

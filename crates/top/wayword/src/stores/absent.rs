@@ -2,7 +2,6 @@
 
 use crate::error::Error;
 use std::{
-    collections::BTreeSet,
     convert::Infallible,
     path::{Path, PathBuf},
 };
@@ -32,15 +31,15 @@ impl StoredRun {
         match self.0 {}
     }
 
-    pub(super) fn take(&self, _: &str) -> Result<(), QueueError> {
+    pub(super) fn fetch_file(&self, _: &str) -> Result<(), QueueError> {
         match self.0 {}
     }
 
-    pub(super) fn agree(&self, _: &str) -> Result<(), QueueError> {
+    pub(super) fn publish(&self, _: &str) -> Result<(), QueueError> {
         match self.0 {}
     }
 
-    pub(super) fn take_marks(&self, _: &Plan) -> Result<BTreeSet<usize>, QueueError> {
+    pub(super) fn fetch_marks(&self, _: &Plan) -> Result<(), QueueError> {
         match self.0 {}
     }
 
@@ -52,7 +51,7 @@ impl StoredRun {
         match self.0 {}
     }
 
-    pub(super) fn fetch(&self, _: &Plan, _: &dyn Fn(u64, u64)) -> Result<(), QueueError> {
+    pub(super) fn fetch(&self, _: &dyn Fn(usize, usize)) -> Result<Plan, QueueError> {
         match self.0 {}
     }
 

@@ -33,30 +33,13 @@ pub(crate) fn local(data: &Path) -> Result<Cow<'_, Path>, Error> {
     }
 }
 
-/// Refuses to merge a run in an object store.
+/// Refuses an address of an object store in place of a folder.
 ///
 /// # Errors
-/// When the folder is an address.
-pub(crate) fn refuse_merge(run: &Path) -> Result<(), Error> {
-    match address(run) {
+/// When it is one.
+pub(crate) fn refuse_address(folder: &Path, problem: &str, hint: &str) -> Result<(), Error> {
+    match address(folder) {
         None => Ok(()),
-        Some(address) => Err(Error::usage(
-            format!("{address}: a run is not merged in an object store"),
-            "name a folder of this machine, as in --to runs/big",
-        )),
-    }
-}
-
-/// Refuses a run of one machine that should lie in an object store: it adds lines to files, which stores cannot do.
-///
-/// # Errors
-/// When the folder is an address.
-pub(crate) fn refuse_address(out: &Path) -> Result<(), Error> {
-    match address(out) {
-        None => Ok(()),
-        Some(address) => Err(Error::usage(
-            format!("{address}: a run of one machine cannot lie in an object store"),
-            "give --queue or --shard 0/1, whose chunks are sent when they are finished; or name a folder",
-        )),
+        Some(address) => Err(Error::usage(format!("{address}: {problem}"), hint)),
     }
 }

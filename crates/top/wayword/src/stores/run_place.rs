@@ -1,9 +1,9 @@
 //! Where the run of many workers lies: in a folder that all share, or in an object store.
 
 use super::{StoredRun, address};
-use crate::{error::Error, output::Output};
+use crate::{error::Error, output::Output, run::is_begun};
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf},
 };
 use wayword_queue::{Board, PLAN, Plan, QueueError, WAY, worker_name};
@@ -30,16 +30,21 @@ impl RunPlace {
             return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None, is_temporary: false });
         };
         let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
+        own_folder(&folder).map_err(Error::io(&folder, "make a folder for temporary files"))?;
         let stored = StoredRun::open(address, &folder)?;
         let place = Self { named: named.to_owned(), folder, stored: Some(stored), is_temporary: true };
-        place.look()?;
+        place.with(|stored| {
+            stored.fetch_file(PLAN)?;
+            stored.fetch_file(WAY)
+        })?;
         Ok(place)
     }
 
-    /// Fetches a run from an object store into a folder that stays.
+    /// Fetches a run from an object store into a folder that stays. How its workers get their chunks is left out: they work in the
+    /// store.
     ///
     /// # Errors
-    /// When the place is a folder already, or the run cannot be fetched.
+    /// When the place is a folder already, the folder has another run, or the run cannot be fetched.
     pub(crate) fn fetch(named: &Path, to: &Path, output: &Output) -> Result<(), Error> {
         let Some(address) = address(named) else {
             return Err(Error::usage(
@@ -47,20 +52,15 @@ impl RunPlace {
                 "leave it out: a run in a folder is merged there",
             ));
         };
-        let before = Plan::find(to)?;
-        let stored = StoredRun::open(address, to)?;
-        let place = Self { named: named.to_owned(), folder: to.to_owned(), stored: Some(stored), is_temporary: false };
-        place.look()?;
-        let plan = Plan::of(to)?;
-        if before.is_some_and(|before| before != plan) {
-            return Err(Error::usage(format!("{}: this folder has another run", to.display()), "give an empty folder"));
+        if is_begun(to) && Plan::find(to)?.is_none() {
+            let problem = format!("{} holds a run that one machine makes", to.display());
+            return Err(Error::usage(problem, "give another folder"));
         }
-        let bar = output.bytes();
-        place.with(|stored| {
-            stored.fetch(&plan, &|done, all| {
-                bar.set_length(all);
-                bar.set_position(done);
-            })
+        let stored = StoredRun::open(address, to)?;
+        let bar = output.progress(0, "chunks");
+        stored.fetch(&|done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
         })?;
         bar.finish_and_clear();
         Ok(())
@@ -85,13 +85,6 @@ impl RunPlace {
         Ok(self.stored.as_ref().map(work).transpose()?.unwrap_or_default())
     }
 
-    fn look(&self) -> Result<(), Error> {
-        self.with(|stored| {
-            stored.take(PLAN)?;
-            stored.take(WAY)
-        })
-    }
-
     /// Makes sure that the store lets one of several writers win.
     ///
     /// # Errors
@@ -104,19 +97,19 @@ impl RunPlace {
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub(crate) fn agree(&self, file: &str) -> Result<(), Error> {
-        self.with(|stored| stored.agree(file))
+    pub(crate) fn publish(&self, file: &str) -> Result<(), Error> {
+        self.with(|stored| stored.publish(file))
     }
 
-    /// Takes the marks of finished chunks.
+    /// Fetches the marks of finished chunks, in place of those of this folder.
     ///
     /// # Errors
     /// When the store cannot be used.
-    pub(crate) fn take_marks(&self, plan: &Plan) -> Result<(), Error> {
-        self.with(|stored| stored.take_marks(plan).map(drop))
+    pub(crate) fn fetch_marks(&self, plan: &Plan) -> Result<(), Error> {
+        self.with(|stored| stored.fetch_marks(plan))
     }
 
-    /// Sends the marks that killed workers did not send.
+    /// Sends the marks that killed workers of a queue did not send.
     ///
     /// # Errors
     /// When the store cannot be used.
@@ -139,6 +132,14 @@ impl RunPlace {
             Some(stored) => work(&stored.sending(board)),
         }
     }
+}
+
+/// Makes a folder that nobody else can read, and that nobody made before.
+fn own_folder(folder: &Path) -> io::Result<()> {
+    let mut builder = fs::DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    builder.create(folder)
 }
 
 impl Drop for RunPlace {

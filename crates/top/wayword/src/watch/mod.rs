@@ -16,6 +16,7 @@ mod telemetry;
 use crate::{
     error::{Error, Exit},
     output::Output,
+    stores,
 };
 pub(crate) use chunk::chunk;
 use lines::Lines;
@@ -41,6 +42,9 @@ impl Watch {
     /// When the file cannot be made, unless the disk is full.
     pub(crate) fn start(spans: Option<&Path>, output: &Output) -> Result<Self, Error> {
         let worker = wayword_queue::worker_name();
+        if let Some(folder) = spans {
+            stores::refuse_address(folder, "spans are written into a folder", "name one of this machine")?;
+        }
         let lines = spans.map(|folder| Lines::begin(folder, &worker, output)).transpose()?.flatten();
         let telemetry = Telemetry::start(&worker, output);
         let is_asked = lines.is_some() || telemetry.is_some();

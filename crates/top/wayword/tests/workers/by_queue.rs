@@ -14,8 +14,8 @@ pub(super) fn server(test: &str) -> Option<Arc<Postgres>> {
 }
 
 /// Asserts that nothing of a run is left to do, and nothing was given up.
-pub(super) fn assert_all_is_done(stage: &Stage, out: &str) {
-    let status = stage.building.wayword(&["runs", "status", out, "--json"]).json();
+pub(super) fn assert_all_is_done(stage: &Stage, out: &str, queue: &str) {
+    let status = stage.building.wayword(&["runs", "status", out, "--queue", queue, "--json"]).json();
     assert_eq!((&status["open"], &status["running"], &status["dead"]), (&0.into(), &0.into(), &serde_json::json!({})));
 }
 
@@ -32,7 +32,7 @@ fn workers_of_a_queue_that_are_killed_make_what_one_makes_and_share_their_calls(
     let queue = flags(&["--queue", &together, "--lease-s", "1"]);
     let start = |part: &[String]| with_models(&killed, "big", &borrowed(part)).spawn().unwrap();
     kill_and_go_on(&[queue.clone(), queue.clone(), queue], kills, start);
-    assert_all_is_done(&killed, "big");
+    assert_all_is_done(&killed, "big", &together);
     merge_to_the_same(&whole, &killed);
     let log = killed.provider.log();
     assert_eq!(log.distinct_answered(), whole.provider.log().distinct_answered());

@@ -75,6 +75,17 @@ impl Crowd<'_> {
     }
 }
 
+/// Bytes of a row in each table that grows with a run, with its indexes.
+fn tell_sizes(url: &str) {
+    let mut client = wayword_database::Database::named(url, None).unwrap().connect().unwrap();
+    for table in ["wayword_ledger.calls", "wayword_ledger.sent", "wayword_ledger.uses", "wayword_queue.chunks"] {
+        let sql = format!("SELECT pg_total_relation_size('{table}'), count(*) FROM {table}");
+        let row = client.query_one(&sql, &[]).unwrap();
+        let [bytes, rows] = [row.get::<_, i64>(0), row.get::<_, i64>(1)];
+        eprintln!("{table}: {rows} rows of {} bytes", bytes / rows.max(1));
+    }
+}
+
 /// Ten minutes of kills, suspensions past the lease, and two restarts of the database.
 #[test]
 #[ignore = "takes a quarter of an hour"]
@@ -90,6 +101,7 @@ fn nothing_is_lost_or_double_after_ten_minutes_of_kills() {
     // At this rate the run would take ten minutes, and the blows make it longer.
     let rate = (calls as f64 / LONG.as_secs_f64() * 60.0).round().to_string();
     eprintln!("{calls} calls; at most {rate} a minute");
+    tell_sizes(&alone);
 
     let lease = LEASE_S.to_string();
     let mut flags = BIG.to_vec();
@@ -121,10 +133,11 @@ fn nothing_is_lost_or_double_after_ten_minutes_of_kills() {
     let log = killed.provider.log();
     let again = log.answered - log.distinct_answered();
     eprintln!("{blows:?} in {took_s:.0} s: {} calls, {again} paid again", log.answered);
-    assert_all_is_done(&killed, "big");
+    assert_all_is_done(&killed, "big", &together);
     merge_to_the_same(&whole, &killed);
     assert_eq!(log.distinct_answered(), calls, "nothing is lost");
-    assert!(again <= (blows.kills + blows.stops) as u64 * IN_FLIGHT, "{again} paid again");
+    // A worker has few calls in flight at that rate.
+    assert!(again <= 2 * (blows.kills + blows.stops) as u64, "{again} paid again");
     assert_eq!((blows.kills, blows.stops, blows.restarts), (KILLS, STOPS, 2), "the run was too short");
 }
 

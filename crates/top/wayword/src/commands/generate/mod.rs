@@ -57,7 +57,12 @@ fn make(args: &Generate, out: &Path, job: &Job, worker: &str, output: &Output) -
     if args.workers.is_asked() {
         return workers::run(out, job, &args.workers, worker, output);
     }
-    stores::refuse_address(out)?;
+    // It adds lines to files, which stores cannot do.
+    stores::refuse_address(
+        out,
+        "a run of one machine cannot lie in an object store",
+        "give --queue or --shard 0/1, whose chunks are sent when they are finished; or name a folder",
+    )?;
     if wayword_queue::Plan::find(out)?.is_some() && !is_begun(out) {
         return Err(Error::usage(
             format!("{} holds a run that workers make", out.display()),

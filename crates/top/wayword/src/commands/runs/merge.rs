@@ -36,7 +36,11 @@ pub(super) fn run(args: &RunsMerge, output: &Output) -> Result<Exit, Error> {
     let folder = args.to.as_ref().unwrap_or(&args.run);
     match &args.to {
         Some(to) => RunPlace::fetch(&args.run, to, output)?,
-        None => stores::refuse_merge(&args.run)?,
+        None => stores::refuse_address(
+            &args.run,
+            "a run is not merged in an object store",
+            "name a folder of this machine, as in --to runs/big",
+        )?,
     }
     let plan = Plan::of(folder)?;
     let mut done = Vec::new();
@@ -47,7 +51,10 @@ pub(super) fn run(args: &RunsMerge, output: &Output) -> Result<Exit, Error> {
     if missing > 0 && !args.partial {
         return Err(Error::usage(
             format!("{}: {missing} of {} not finished", folder.display(), count(plan.chunks(), "chunk")),
-            format!("see `wayword runs status {}`; or give --partial to put together what is there", folder.display()),
+            format!(
+                "see `wayword runs status {}`; or give --partial to put together what is there",
+                args.run.display()
+            ),
         ));
     }
     let _held = crate::run::hold(folder)?;

@@ -9,7 +9,7 @@ use crate::{
     stores::RunPlace,
 };
 use serde::Serialize;
-use wayword_queue::{Plan, reopen};
+use wayword_queue::{Plan, failing, reopen};
 
 #[derive(Serialize)]
 struct Opened {
@@ -20,15 +20,26 @@ struct Opened {
 pub(super) fn run(args: &RunsRetry, output: &Output) -> Result<Exit, Error> {
     let place = RunPlace::of(&args.run)?;
     let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
-    place.take_marks(&plan)?;
-    let chunks = match queue_of(folder, &plan, args.password_env.as_deref())? {
-        None => reopen(folder, &plan, &args.reason)?,
+    place.fetch_marks(&plan)?;
+    let chunks = match queue_of(&place, &plan, &args.database)? {
+        None => {
+            let chunks = failing(folder, &plan, &args.reason)?;
+            place.reopen(&chunks)?;
+            reopen(folder, &chunks)?;
+            chunks
+        }
         #[cfg(feature = "queue")]
-        Some(queue) => queue.retry(&plan, &args.reason)?,
+        Some(queue) => {
+            queue.mark()?;
+            let chunks = queue.failing(&plan, &args.reason)?;
+            // If this ends here, the queue's workers send the marks again, and the chunks stay finished.
+            place.reopen(&chunks)?;
+            queue.reopen(&chunks)?;
+            chunks
+        }
         #[cfg(not(feature = "queue"))]
         Some(never) => match never {},
     };
-    place.reopen(&chunks)?;
     let told = match chunks.len() {
         0 => format!("no chunk has a failure with the words {:?}", args.reason),
         opened => format!("{} opened again: start workers with the same command as before", count(opened, "chunk")),

@@ -2,7 +2,7 @@
 
 use super::prometheus;
 use crate::{
-    cli::RunsStatus,
+    cli::{RunsQueue, RunsStatus},
     commands::generate::Way,
     count::count,
     error::{Error, Exit},
@@ -34,19 +34,26 @@ pub(super) enum NoQueue {}
 /// The queue of a run; `None` if its workers have fixed parts, or none has begun.
 #[cfg(feature = "queue")]
 pub(super) fn queue_of(
-    folder: &Path,
+    place: &RunPlace,
     plan: &Plan,
-    password_env: Option<&str>,
+    asked: &RunsQueue,
 ) -> Result<Option<wayword_queue::Queue>, Error> {
-    let Some(Way::Queue(name)) = Way::of(folder)? else { return Ok(None) };
-    let database = wayword_database::Database::named(&name, password_env)?;
-    Ok(Some(wayword_queue::Queue::open(database, folder, plan)?))
+    let Some(Way::Queue(name)) = Way::of(place.folder())? else { return Ok(None) };
+    // Whoever can write to a store must not choose which server gets the user's password.
+    if place.is_stored() && asked.queue.as_ref() != Some(&name) {
+        return Err(Error::usage(
+            format!("{}: its workers use the queue {name}", place.named().display()),
+            format!("if you know it, give --queue {name}"),
+        ));
+    }
+    let database = wayword_database::Database::named(&name, asked.password_env.as_deref())?;
+    Ok(Some(wayword_queue::Queue::open(database, place.folder(), plan)?))
 }
 
 /// None: this build has no way to a database.
 #[cfg(not(feature = "queue"))]
-pub(super) fn queue_of(folder: &Path, _: &Plan, _: Option<&str>) -> Result<Option<NoQueue>, Error> {
-    match Way::of(folder)? {
+pub(super) fn queue_of(place: &RunPlace, _: &Plan, _: &RunsQueue) -> Result<Option<NoQueue>, Error> {
+    match Way::of(place.folder())? {
         Some(Way::Queue(name)) => {
             Err(Error::not_built(format!("the queue {name} cannot be used: this build has no way to a database")))
         }
@@ -98,9 +105,9 @@ pub(super) struct AtWork {
 pub(super) fn run(args: &RunsStatus, output: &Output) -> Result<Exit, Error> {
     let place = RunPlace::of(&args.run)?;
     let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
-    let queue = queue_of(folder, &plan, args.password_env.as_deref())?;
+    let queue = queue_of(&place, &plan, &args.database)?;
     loop {
-        place.take_marks(&plan)?;
+        place.fetch_marks(&plan)?;
         let mut status = Status { run: args.run.display().to_string(), ..Status::of(folder, &plan)? };
         #[cfg(feature = "queue")]
         if let Some(queue) = &queue {

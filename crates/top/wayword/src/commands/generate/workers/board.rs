@@ -36,7 +36,7 @@ impl Way {
         let (folder, path) = (place.folder(), place.folder().join(WAY));
         let text = serde_json::to_string(self).unwrap_or_default();
         put_new(&path, text.as_bytes())?;
-        place.agree(WAY)?;
+        place.publish(WAY)?;
         match Self::of(folder)? {
             Some(kept) if kept == *self => Ok(()),
             kept => Err(Error::usage(

@@ -60,7 +60,7 @@ pub(super) fn run(out: &Path, job: &Job, asked: &AskedWorkers, worker: &str, out
         refuse_impossible_paths(&plan.items, &settings, platform.as_ref())?;
         place.check()?;
         planned::put(out, &plan, &settings, asked)?;
-        place.agree(PLAN)?;
+        place.publish(PLAN)?;
     }
     // Another worker may have written the plan meanwhile: what the folder has counts.
     let kept = kept.map_or_else(|| wayword_queue::Plan::of(out), Ok)?;
@@ -86,16 +86,18 @@ fn make_chunks(
     output: &Output,
 ) -> Result<Worked, Error> {
     let out = place.folder();
-    place.take_marks(kept)?;
-    let counter = Counter::open(place, kept, worker, asked)?;
-    let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
-    let calls = Calls::open(&job, &kept.run, output)?;
-    if place.is_stored() && asked.shard.is_some() && calls.is_some() {
+    if place.is_stored() && asked.shard.is_some() && !plan.models.is_empty() {
         return Err(Error::usage(
             format!("{}: a shard cannot keep the calls of models in an object store", place.named().display()),
             "give --queue DATABASE, which keeps them; or --out a folder that all workers share",
         ));
     }
+    if asked.shard.is_some() {
+        place.fetch_marks(kept)?;
+    }
+    let counter = Counter::open(place, kept, worker, asked)?;
+    let job = Job { keeping: counter.kept_calls(), ..plan.job.clone() };
+    let calls = Calls::open(&job, &kept.run, output)?;
     let lookout = Lookout::of(settings, calls.as_ref(), &plan.styles)?;
     let team = Team::new(settings, calls.as_ref(), plan.platform)?.with(lookout);
     let shop = Workshop { plan, settings, calls: calls.as_ref(), team: &team, scenes: KnownScenes::new() };
@@ -103,7 +105,11 @@ fn make_chunks(
     let make = |claimed| watch::chunk(claimed, || chunk::make(out, kept, &shop, claimed, worker, output));
     let finished: Finished<Why> = counter.with(|board| place.sending(board, |board| work(board, make, interrupted)))?;
     counter.close()?;
-    place.send_marks(kept)?;
+    match asked.shard {
+        // Others have finished chunks meanwhile.
+        Some(_) => place.fetch_marks(kept)?,
+        None => place.send_marks(kept)?,
+    }
     Worked::of(place, kept, finished, calls.as_ref().map(Calls::spent))
 }
 

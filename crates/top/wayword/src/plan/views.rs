@@ -12,7 +12,7 @@ type Place = (SceneId, ([u64; 3], Option<ViewpointId>));
 
 /// The views of some paths.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct Views {
     views: BTreeSet<(Place, i64)>,
     panoramas: BTreeSet<Place>,
 }
@@ -24,7 +24,7 @@ pub(super) struct Different {
     pub(super) panoramas: u64,
 }
 
-impl Seen {
+impl Views {
     /// Adds what is seen along a path.
     pub(super) fn add(&mut self, path: &Path, frames: FrameSelection) {
         for frame in &path.frames {
