@@ -7,7 +7,7 @@ use std::{
     cell::Cell,
     collections::BTreeMap,
     fmt::Write,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{Mutex, PoisonError},
     time::{Duration, Instant},
 };
@@ -26,6 +26,16 @@ pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
     if let Some(folder) = known.get(address) {
         return Ok(folder.clone());
     }
+    let nothing = || {
+        Error::usage(
+            format!("{address}: there is no data there"),
+            "give the prefix under which the files of the data's folder lie",
+        )
+    };
+    // A bucket that is a folder would be made.
+    if address.strip_prefix("file://").is_some_and(|folder| !Path::new(folder).exists()) {
+        return Err(nothing());
+    }
     let folder = folder_of(address)?;
     let bucket = Bucket::open(address).map_err(QueueError::from)?;
     let told = Cell::new(None::<Instant>);
@@ -37,10 +47,7 @@ pub(super) fn fetched(address: &str) -> Result<PathBuf, Error> {
     };
     let got = bucket.fetch_folder("", &folder, MOST_BYTES, &progress).map_err(QueueError::from)?;
     if got.files + got.kept == 0 {
-        return Err(Error::usage(
-            format!("{address}: there is no data there"),
-            "give the prefix under which the files of the data's folder lie",
-        ));
+        return Err(nothing());
     }
     known.insert(address.to_owned(), folder.clone());
     Ok(folder)
