@@ -3,16 +3,15 @@
 use super::{Bucket, CloudError};
 use crate::{
     Board, Claimed, Done, Left, PLAN, Plan, QueueError, chunk_folder,
-    done::{CHUNKS, done_of, done_path, from_file, to_bytes},
+    done::{CHUNKS, done_of, done_path, to_bytes},
     folder::remove,
     put_whole,
 };
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeSet,
     fs,
     io::ErrorKind,
     path::{Path, PathBuf},
-    sync::{Mutex, PoisonError},
     time::{SystemTime, UNIX_EPOCH},
 };
 
@@ -121,19 +120,20 @@ impl StoredRun {
         Ok(self.bucket.remove(&self.mark(chunk))?)
     }
 
-    /// Fetches the plan, the marks and the results that these name into the folder, and returns the plan. Continues where it was
-    /// stopped.
+    /// Fetches the plan, the marks and the results that these name into the folder. Continues where it was stopped.
     ///
     /// # Errors
     /// When there is no run, the folder has another one, or the store or the folder cannot be used.
-    pub fn fetch(&self, progress: &dyn Fn(usize, usize)) -> Result<Plan, QueueError> {
-        let broken = |problem: &str| QueueError::Broken { path: self.folder.clone(), problem: problem.to_owned() };
+    pub fn fetch(&self, progress: &dyn Fn(usize, usize)) -> Result<(), QueueError> {
         let Some(bytes) = self.bucket.get(PLAN, MOST_BYTES)? else {
             return Err(QueueError::NoPlan(self.bucket.to_string().into()));
         };
         let path = self.folder.join(PLAN);
         match fs::read(&path) {
-            Ok(before) if before != bytes => return Err(broken("this folder has another run")),
+            Ok(before) if before != bytes => {
+                let problem = "this folder has another run".to_owned();
+                return Err(QueueError::Broken { path: self.folder.clone(), problem });
+            }
             Ok(_) => {}
             Err(_) => put_whole(&path, &bytes)?,
         }
@@ -146,13 +146,13 @@ impl StoredRun {
             }
             progress(chunk + 1, plan.chunks());
         }
-        Ok(plan)
+        Ok(())
     }
 
     /// A board that sends results before it says that a chunk is finished.
     #[must_use]
     pub fn sending<'a>(&'a self, board: &'a dyn Board) -> Sending<'a> {
-        Sending { run: self, board, tries: Mutex::default() }
+        Sending { run: self, board }
     }
 
     /// The name of a chunk's mark, here and in the store.
@@ -174,7 +174,7 @@ impl StoredRun {
             return Ok(true);
         }
         self.fetch_file(&name)?;
-        match from_file::<Done>(&path)? {
+        match done_of(&self.folder, done.chunk)? {
             Some(there) if there.epoch == done.epoch => Ok(true),
             Some(there) if is_try(done.epoch) || there.epoch > done.epoch => Ok(false),
             _ => {
@@ -206,26 +206,23 @@ fn is_try(epoch: i64) -> bool {
     epoch >= FIRST_TRY
 }
 
+/// The claim as the board knows it: a shard knows no tries.
+fn on_board(claimed: Claimed) -> Claimed {
+    if is_try(claimed.epoch) { Claimed { epoch: 0, ..claimed } } else { claimed }
+}
+
 /// A board whose chunks' results go into an object store.
 pub struct Sending<'a> {
     run: &'a StoredRun,
     board: &'a dyn Board,
-    /// The claims of the board, by chunk.
-    tries: Mutex<BTreeMap<usize, Claimed>>,
 }
 
 impl Sending<'_> {
-    /// The claim as the board knows it.
-    fn on_board(&self, claimed: Claimed) -> Claimed {
-        let tries = self.tries.lock().unwrap_or_else(PoisonError::into_inner);
-        tries.get(&claimed.chunk).copied().unwrap_or(claimed)
-    }
-
     fn send(&self, claimed: Claimed, results: &Path) -> Result<(), QueueError> {
         let sent = self.run.bucket.send_folder(results, &self.run.results(results));
         sent.map(drop).or_else(|error: CloudError| {
             // It is no fault of the chunk.
-            self.board.hand_back(self.on_board(claimed))?;
+            self.board.hand_back(on_board(claimed))?;
             Err(error.into())
         })
     }
@@ -233,15 +230,14 @@ impl Sending<'_> {
 
 impl Board for Sending<'_> {
     fn take(&self) -> Result<Option<Claimed>, QueueError> {
-        let Some(taken) = self.board.take()? else { return Ok(None) };
-        self.tries.lock().unwrap_or_else(PoisonError::into_inner).insert(taken.chunk, taken);
-        Ok(Some(if taken.epoch == 0 { Claimed { epoch: new_try(), ..taken } } else { taken }))
+        let taken = self.board.take()?;
+        Ok(taken.map(|taken| if taken.epoch == 0 { Claimed { epoch: new_try(), ..taken } } else { taken }))
     }
 
     fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
         let results = chunk_folder(&self.run.folder, claimed.chunk, claimed.epoch);
         self.send(claimed, &results)?;
-        let holds = self.board.complete(self.on_board(claimed), done)? && self.run.put(done)?;
+        let holds = self.board.complete(on_board(claimed), done)? && self.run.put(done)?;
         if !is_try(claimed.epoch) {
             // The queue knows what is done, also after a chunk was opened again. A mark that stays here does not.
             remove(&done_path(&self.run.folder, claimed.chunk))?;
@@ -253,11 +249,11 @@ impl Board for Sending<'_> {
     }
 
     fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {
-        self.board.hand_back(self.on_board(claimed))
+        self.board.hand_back(on_board(claimed))
     }
 
     fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError> {
-        self.board.give_up(self.on_board(claimed), reason)
+        self.board.give_up(on_board(claimed), reason)
     }
 
     fn left(&self) -> Result<Left, QueueError> {

@@ -7,7 +7,7 @@ use std::{
 };
 use wayword_queue::{Board, Plan, QueueError, Shard};
 
-/// The hint that no build of a release has this.
+/// The error of a build without them. No release has them.
 fn not_built(address: &str) -> Error {
     Error::usage(
         format!("{address}: this build cannot reach object stores"),
@@ -51,7 +51,7 @@ impl StoredRun {
         match self.0 {}
     }
 
-    pub(super) fn fetch(&self, _: &dyn Fn(usize, usize)) -> Result<Plan, QueueError> {
+    pub(super) fn fetch(&self, _: &dyn Fn(usize, usize)) -> Result<(), QueueError> {
         match self.0 {}
     }
 

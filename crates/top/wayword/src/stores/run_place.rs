@@ -15,8 +15,6 @@ pub(crate) struct RunPlace {
     /// Where it is worked on. For a run in an object store this is a folder of this process alone.
     folder: PathBuf,
     stored: Option<StoredRun>,
-    /// Whether the folder is removed at the end.
-    is_temporary: bool,
 }
 
 impl RunPlace {
@@ -27,12 +25,12 @@ impl RunPlace {
     /// When the address cannot be used, or this build cannot reach object stores.
     pub(crate) fn of(named: &Path) -> Result<Self, Error> {
         let Some(address) = address(named) else {
-            return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None, is_temporary: false });
+            return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None });
         };
         let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
         own_folder(&folder).map_err(Error::io(&folder, "make a folder for temporary files"))?;
         let stored = StoredRun::open(address, &folder)?;
-        let place = Self { named: named.to_owned(), folder, stored: Some(stored), is_temporary: true };
+        let place = Self { named: named.to_owned(), folder, stored: Some(stored) };
         place.with(|stored| {
             stored.fetch_file(PLAN)?;
             stored.fetch_file(WAY)
@@ -81,8 +79,8 @@ impl RunPlace {
         self.stored.is_some()
     }
 
-    fn with<T: Default>(&self, work: impl FnOnce(&StoredRun) -> Result<T, QueueError>) -> Result<T, Error> {
-        Ok(self.stored.as_ref().map(work).transpose()?.unwrap_or_default())
+    fn with(&self, work: impl FnOnce(&StoredRun) -> Result<(), QueueError>) -> Result<(), Error> {
+        Ok(self.stored.as_ref().map_or(Ok(()), work)?)
     }
 
     /// Makes sure that the store lets one of several writers win.
@@ -144,7 +142,7 @@ fn own_folder(folder: &Path) -> io::Result<()> {
 
 impl Drop for RunPlace {
     fn drop(&mut self) {
-        if self.is_temporary {
+        if self.is_stored() {
             // The system empties the folder of temporary files sooner or later.
             let _ = fs::remove_dir_all(&self.folder);
         }
