@@ -1,4 +1,4 @@
-//! What an agent does in continuous space: single actions.
+//! The single actions by which an agent moves in continuous space: stop, one step forward, one turn.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "u8", try_from = "u8")]
 pub enum Action {
-    /// Says that the walk is over.
+    /// Ends the walk.
     Stop = 0,
     /// One step forward.
     Forward = 1,
@@ -16,7 +16,7 @@ pub enum Action {
     Right = 3,
 }
 
-/// A number that is none of an action.
+/// A number that belongs to no action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{0} is no action: expected 0 (stop), 1 (forward), 2 (left) or 3 (right)")]
 pub struct NoAction(u8);

@@ -1,8 +1,8 @@
-//! What a text may mean beside what it was written for.
+//! The ambiguity of an instruction: other places and objects that it fits as well.
 
 use serde::{Deserialize, Serialize};
 
-/// What an instruction may mean. It is no verdict: an ambiguous text can be true of its path.
+/// How many ends and objects an instruction fits. It is no verdict: an ambiguous text can be true of its path.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Ambiguity {
     /// Places, 3 m apart or more, at which walks end that fit the text about as well as the annotated one, which counts too.
@@ -10,7 +10,7 @@ pub struct Ambiguity {
     pub ends: Option<usize>,
     /// Objects at the end of the path that its task may mean; 0 where it names none that is known.
     pub objects: usize,
-    /// What is only at the annotated end, where there are several.
+    /// What only the annotated end has, where there are several ends.
     pub told_apart_by: Option<String>,
     /// Why the ends are not known, where they are not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -24,7 +24,7 @@ impl Ambiguity {
         self.ends.is_some_and(|ends| ends > 1) || self.objects > 1
     }
 
-    /// What is ambiguous, in a sentence; `None` where nothing is.
+    /// A sentence for the user that names the ambiguity; `None` if the text is not ambiguous.
     #[must_use]
     pub fn told(&self) -> Option<String> {
         match (self.ends, self.objects) {
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_text_is_ambiguous_by_its_ends_or_by_its_objects() {
+    fn ambiguity_counts_ends_and_objects() {
         let told = |ends, objects| Ambiguity { ends, objects, ..Ambiguity::default() }.told();
         assert!(told(Some(3), 1).unwrap().contains("3 places"));
         assert!(told(Some(1), 2).unwrap().contains("2 objects"));

@@ -1,4 +1,4 @@
-//! What is said about a view, and who vouches for it.
+//! Captions: a view in words, the sightings behind them with their sources, and the dialogue that led to them.
 
 use crate::{Found, ModelError, Schema, Side, View};
 use serde::{Deserialize, Serialize};
@@ -14,25 +14,27 @@ pub struct Caption {
     /// The rooms that it may be, where the witness was not sure of one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub perhaps_rooms: Vec<String>,
-    /// What was said to be there, not to be there, or not known.
+    /// Objects that a witness saw, denied or was not sure of.
     pub sightings: Vec<Sighting>,
     /// The ways out of the room that were named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ways: Vec<WayOut>,
     /// The whole dialogue.
     pub transcript: Vec<Exchange>,
-    /// Who wrote the text, where the run's summariser did not: it failed, or there was nothing to summarise.
+    /// The writer of the text, where it is not the run's summariser: that failed, or the dialogue had no usable
+    /// answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// Whether it was made of an answer in a form: a list of what the view shows, and how sure the witness was of each.
+    /// Whether it was made from a structured answer: a list of what the view shows, and how sure the witness was of
+    /// each.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_structured: bool,
-    /// What became of the form that was asked for, where an answer did not have it.
+    /// The outcome of asking for a form, where an answer did not have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<Form>,
 }
 
-/// What became of an answer that did not have the form that was asked for.
+/// The outcome of asking for a form, where the first answer did not have it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
@@ -45,9 +47,9 @@ pub enum Form {
 /// A way out of the room that a view shows.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WayOut {
-    /// What it is: "doorway", "stairs".
+    /// The name: "doorway", "stairs".
     pub name: String,
-    /// Where it was said to be in the view.
+    /// Where in the view the witness placed it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<Where>,
     /// The room that is seen through it.
@@ -55,38 +57,38 @@ pub struct WayOut {
     pub leads_to: Option<String>,
 }
 
-/// One object, and what a witness said of it.
+/// One object, and what a witness answered about it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sighting {
     /// Its name as the witness gave it.
     pub name: String,
     /// Seen, denied or unsure.
     pub witness: Witness,
-    /// Where it was said to be in the view.
+    /// Where in the view the witness placed it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<Where>,
-    /// The colour it was said to have.
+    /// Its colour, as the witness named it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<String>,
-    /// Further colours it was said to have.
+    /// Further colours that the witness named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub more_colours: Vec<String>,
-    /// What it was said to be made of.
+    /// Its material, as the witness named it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
-    /// Whether it was said to be far away, or is measured to be.
+    /// Whether the witness called it far away, or it was measured to be.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_far: bool,
-    /// Whether it was said to stand out for somebody who walks there.
+    /// Whether the witness thought that it catches the eye of a person who walks there.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stands_out: bool,
-    /// Whether several were said to be there.
+    /// Whether the witness saw several.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub several: bool,
     /// Where a detector found it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spot: Option<Spot>,
-    /// Who said so (`labels`, `provider/model`).
+    /// The witness (`labels`, `provider/model`).
     pub by: String,
 }
 
@@ -103,8 +105,8 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// A find in a picture that is `width_px` wide and shows `horizontal_fov_rad`, as a pinhole camera does. Its distance is
-    /// not known.
+    /// A detection in a picture that is `width_px` wide and shows `horizontal_fov_rad`, as a pinhole camera does. Its
+    /// distance is not known.
     #[must_use]
     pub fn new(found: Found, width_px: u32, horizontal_fov_rad: f64) -> Self {
         let half_px = f64::from(width_px) / 2.0;
@@ -115,7 +117,7 @@ impl Spot {
 }
 
 impl Sighting {
-    /// What a witness said of an object, and nothing more.
+    /// A sighting with a name, an answer and its witness, and no further details.
     #[must_use]
     pub fn new(name: impl Into<String>, witness: Witness, by: impl Into<String>) -> Self {
         Self {
@@ -134,7 +136,7 @@ impl Sighting {
     }
 }
 
-/// What a witness said about an object.
+/// A witness's answer about an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Witness {
@@ -197,9 +199,9 @@ impl Where {
 /// A question and its answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Exchange {
-    /// What was asked.
+    /// The question.
     pub question: String,
-    /// What was answered; empty where no answer could be used.
+    /// The answer; empty where no answer could be used.
     pub answer: String,
     /// Why the question was asked again in other words, where it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -214,7 +216,7 @@ impl Exchange {
     }
 }
 
-/// What is wrong with an answer that cannot be used (the first four are known of BLIP-2: ChatCaptioner #4 and #7).
+/// Why an answer cannot be used (the first four are known of BLIP-2: ChatCaptioner #4 and #7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Trouble {
@@ -222,7 +224,7 @@ pub enum Trouble {
     Empty,
     /// It repeats the question.
     Echo,
-    /// It says the same words over and over.
+    /// It repeats the same words over and over.
     Loop,
     /// It is the answer to another question, word for word.
     Repeat,
@@ -232,20 +234,20 @@ pub enum Trouble {
     Refusal,
 }
 
-/// A question about a view, with what was said before.
+/// A question about a view, with the dialogue so far.
 #[derive(Debug, Clone, Copy)]
 pub struct Ask<'a> {
-    /// What is looked at.
+    /// The view that the question is about.
     pub view: &'a View,
-    /// What is asked.
+    /// The question.
     pub question: &'a str,
     /// The dialogue so far.
     pub history: &'a [Exchange],
-    /// What the answer is to be.
+    /// The form that the answer should have.
     pub answer: AnswerForm,
 }
 
-/// What an answer is to be.
+/// Which form an answer should have.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum AnswerForm {
     /// A sentence or two.
@@ -255,10 +257,10 @@ pub enum AnswerForm {
     Json(Schema),
 }
 
-/// What was answered.
+/// The words of an answer.
 pub type Answer = String;
 
-/// Sees: answers questions about views.
+/// The role `see`: answers questions about views.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait Answerer: Send + Sync {

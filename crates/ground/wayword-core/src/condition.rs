@@ -1,10 +1,10 @@
-//! What the files of a scene offer, before a run uses them.
+//! The condition of a scene's files: what they offer and what they lack, examined before a run uses them.
 
 use crate::SceneId;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What the files of a scene offer, and what they lack.
+/// The condition of a scene's files.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Condition {
     /// The scene.
@@ -13,7 +13,7 @@ pub struct Condition {
     pub has_pictures: bool,
     /// How large its viewpoint graph is, where that comes from a file.
     pub graph: Option<GraphSize>,
-    /// The number of its storeys, where a graph tells it.
+    /// The number of its storeys, where the graph has them.
     pub storeys: Option<u32>,
     /// Whether its objects are known.
     pub has_labels: bool,
@@ -21,7 +21,7 @@ pub struct Condition {
     pub rooms: RoomNames,
     /// How its viewpoint graph lies in it, where that was examined.
     pub fit: Option<Fit>,
-    /// What is missing, although the scene can be used.
+    /// Defects that do not keep a run from using the scene.
     pub lacks: Vec<Lack>,
     /// Why the scene cannot be used; `None` if it can.
     pub unusable: Option<Lack>,
@@ -61,17 +61,17 @@ pub struct Fit {
     pub through_walls: usize,
 }
 
-/// Something that is missing or wrong, and what to do.
+/// Something that is missing or wrong in a scene's files, and how the user can repair it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Lack {
-    /// What it is.
+    /// The problem, in words.
     pub what: String,
-    /// What to do.
+    /// Advice for the user.
     pub hint: String,
 }
 
 impl Condition {
-    /// The condition of a scene that cannot be used, and of which nothing else is known.
+    /// The condition of a scene that cannot be used and was not examined further.
     #[must_use]
     pub fn unusable(scene: SceneId, why: Lack) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Third-party decoders: when one panics on a broken file, only its own work ends.
+//! Contains panics of third-party decoders: when one panics on a broken file, only its own work ends.
 
 use std::{
     cell::Cell,
@@ -11,7 +11,7 @@ thread_local! {
 
 /// Runs third-party code on untrusted bytes; `None` where it panicked.
 ///
-/// After a panic, do not use what `work` could change. What it only read can still be used.
+/// After a panic, do not use values that `work` could change. Values that it only read can still be used.
 pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     DEPTH.set(DEPTH.get() + 1);
     let done = catch_unwind(AssertUnwindSafe(work));
@@ -27,8 +27,8 @@ pub fn decoded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, Strin
     contained(decode).unwrap_or_else(|| Err("is broken".to_owned()))
 }
 
-/// Whether this thread runs contained code. If so, the program's panic hook prints nothing, because the caller reports
-/// the failure itself.
+/// Whether this thread runs contained code. If so, the program's panic hook prints no message, because the caller
+/// reports the failure itself.
 #[must_use]
 pub fn is_contained() -> bool {
     DEPTH.get() > 0
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_is_contained_and_known_to_be() {
+    fn contained_stops_a_panic_and_marks_the_thread() {
         let panics = || -> u32 { panic!("contained: {}", is_contained()) };
         assert_eq!(contained(|| contained(panics).map_or_else(is_contained, |_| false)), Some(true));
         assert!(!is_contained());

@@ -1,6 +1,6 @@
-//! How far away is what a view's picture shows.
+//! Depth images: how far away each pixel of a view's picture is.
 
-/// Of each pixel of a view's picture the distance along the view's axis.
+/// For each pixel of a view's picture, the distance along the view's axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Depth {
     width_px: u32,
@@ -17,13 +17,13 @@ pub struct WrongDepthCount {
     actual: usize,
 }
 
-/// Which of a box's distances counts, as a share of its pixels, the nearest first. A thing hardly fills its box: through its
-/// legs and over its back one sees what is behind it.
+/// Which of a box's distances counts, as a share of its pixels, the nearest first. A thing hardly fills its box:
+/// between its legs and over its back one sees the background.
 const NEARER: f64 = 0.25;
 
 impl Depth {
-    /// `metres` holds one value per pixel, rows from the top: the distance along the view's axis, in front of the eye. What is
-    /// 0, negative or not finite is not known.
+    /// `metres` holds one value per pixel, rows from the top: the distance along the view's axis, in front of the eye.
+    /// A value that is 0, negative or not finite means that the distance is not known.
     ///
     /// # Errors
     /// When the buffer has another length.
@@ -35,9 +35,9 @@ impl Depth {
         }
     }
 
-    /// How far over the floor a thing is from the eye, metres, of a level view: the lower quartile over the middle of its box,
-    /// half as wide and half as high. `edges` are the box's left, top, right and bottom edge as shares of the picture's width
-    /// and height. `None` where nothing is known there.
+    /// How far over the floor a thing is from the eye, metres, in a level view: the lower quartile over the middle of
+    /// its box, half as wide and half as high. `edges` are the box's left, top, right and bottom edge as shares of the
+    /// picture's width and height. `None` if no distance is known there.
     #[must_use]
     pub fn level_m(&self, edges: [f64; 4], horizontal_fov_rad: f64) -> Option<f64> {
         let [left, top, right, bottom] = edges;
@@ -64,7 +64,7 @@ fn middle([from, to]: [f64; 2], side_px: u32) -> Option<std::ops::Range<usize>> 
     let side = f64::from(side_px);
     let first = ((from + quarter) * side).floor().min(side - 1.0);
     let end = ((to - quarter) * side).ceil().max(first + 1.0).min(side);
-    // What is not a number compares as false.
+    // A NaN compares as false here.
     (quarter >= 0.0 && side_px > 0).then_some(first as usize..end as usize)
 }
 
@@ -80,9 +80,9 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_before_a_wall_is_as_far_as_it_stands() {
+    fn level_m_measures_the_post_before_the_wall() {
         let far_m = post().level_m([0.3, 0.0, 0.7, 1.0], FRAC_PI_2).unwrap();
-        // The columns beside the axis: their rays are a little longer than the axis.
+        // The columns next to the axis: their rays are a little longer than the axis.
         assert!((far_m - 2.0 * f64::hypot(1.0, 0.1)).abs() < 1e-6, "{far_m}");
     }
 
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_is_left_out() {
+    fn level_m_leaves_out_unknown_distances() {
         let mut metres = vec![0.0, f32::NAN, f32::INFINITY, -1.0, 3.0];
         let of = |metres: Vec<f32>| Depth::new(5, 1, metres).unwrap().level_m([-1.0, 0.0, 3.0, 1.0], 1e-3);
         assert_eq!(of(metres.clone()), None, "the middle half holds nothing that is known");

@@ -1,4 +1,5 @@
-//! Models that find things in pictures by phrases, and how any of them scores whole views.
+//! Detectors: models that look for phrases in pictures and give boxes with scores, and an adapter that scores whole
+//! views by their best box.
 
 use crate::{Grounder, Label, ModelError, ObjectId, View};
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ const LEAST_OVERLAP: f64 = 0.1;
 pub struct Found {
     /// Left, top, right and bottom edge in the view's picture, pixels from its upper left corner, within the picture.
     pub box_px: [f32; 4],
-    /// How sure the detector is, 0 to 1. [`Scoring`] says what it means.
+    /// How sure the detector is, 0 to 1, on the scale that [`Scoring`] explains.
     pub score: f32,
 }
 
@@ -30,7 +31,8 @@ impl Found {
     }
 }
 
-/// The finds that share at most `most_overlap` (0 to 1) with each better one that stays. They come the best first.
+/// Leaves out every detection that overlaps a better one by more than `most_overlap` (0 to 1). The rest come in their
+/// order, which must be the best first.
 pub fn apart(found: impl IntoIterator<Item = Found>, most_overlap: f64) -> impl Iterator<Item = Found> {
     let mut kept: Vec<Found> = Vec::new();
     found.into_iter().filter(move |found| {
@@ -42,12 +44,12 @@ pub fn apart(found: impl IntoIterator<Item = Found>, most_overlap: f64) -> impl 
     })
 }
 
-/// What the scores of a detector mean.
+/// The meaning of a detector's scores.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scoring {
-    /// What a score is, and of which prompt, in words for provenance.
+    /// The definition of a score, with the prompt that it belongs to, in words for provenance.
     pub means: &'static str,
-    /// The score from which its makers take a box for a find.
+    /// The score from which its makers count a box as a find.
     pub found_from: f32,
     /// Whether the phrases that are looked for together change each other's scores. Then scores of different phrases
     /// can be compared only where each phrase was looked for by itself.
@@ -57,14 +59,14 @@ pub struct Scoring {
 /// Finds things in pictures by phrases.
 ///
 /// Scores of one detector and phrase can be compared between views, because every view is looked at by itself. Between
-/// phrases they can be compared as [`Scoring::phrases_meet`] says; between detectors they cannot.
+/// phrases they can be compared under the condition of [`Scoring::phrases_meet`]; between detectors they cannot.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait Detector: Send + Sync {
     /// `provider/model`.
     fn name(&self) -> &str;
 
-    /// What its scores mean.
+    /// The meaning of its scores.
     fn scoring(&self) -> Scoring;
 
     /// One result per view, in their order: for each phrase, in their order, where it was found, the best first, at most
@@ -100,7 +102,7 @@ impl<D: Detector> Grounded<D> {
         Self { detector }
     }
 
-    /// What its scores mean.
+    /// The meaning of its scores.
     #[must_use]
     pub fn scoring(&self) -> Scoring {
         self.detector.scoring()
@@ -128,7 +130,8 @@ impl<D: Detector> Grounder for Grounded<D> {
         scores
     }
 
-    /// The object whose outline the best box of all views covers best. A view that knows no outlines has no objects.
+    /// The object of which the outline is covered best by the best box of all views. A view without outlines has no
+    /// objects.
     fn point(&self, views: &[&View], phrase: &str) -> Result<Option<ObjectId>, ModelError> {
         let mut best: Option<(Found, &View)> = None;
         for (view, found) in views.iter().zip(self.detector.detect(views, &[phrase])) {
@@ -142,7 +145,7 @@ impl<D: Detector> Grounder for Grounded<D> {
     }
 }
 
-/// The object of a view whose outline a box covers best.
+/// The object of a view that a box covers best, judged by the outlines.
 fn outlined(view: &View, found: Found) -> Option<ObjectId> {
     let share = |label: &Label| {
         label.box_px.map_or(0.0, |[x, y, width, height]| overlap(found.edges(), [x, y, x + width, y + height]))

@@ -1,6 +1,6 @@
-//! Words of a text that a reader should doubt, and what may stand there instead.
+//! Doubts: words of a text that a reader should not rely on, with alternatives for them.
 //!
-//! Doubts are for readers, and no verdict: words may be right that are doubted.
+//! A doubt is a hint for readers and no verdict: the doubted words may be right.
 
 use serde::{Deserialize, Serialize};
 use std::cmp::Reverse;
@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grade {
-    /// Nothing says that they are right.
+    /// No evidence supports them.
     Uncertain,
     /// They are likely wrong.
     Likely,
@@ -28,7 +28,7 @@ impl Grade {
         }
     }
 
-    /// What it says of words, for readers.
+    /// The grade in words for readers.
     #[must_use]
     pub fn told(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ impl Cause {
     }
 }
 
-/// What may stand in the place of doubted words.
+/// Words that may replace doubted ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Alternative {
@@ -91,7 +91,7 @@ pub struct Doubt {
     pub cause: Cause,
     /// Why, in a sentence.
     pub reason: String,
-    /// What may stand there instead, the best first; at most [`MOST_ALTERNATIVES`].
+    /// Replacements, the best first; at most [`MOST_ALTERNATIVES`].
     pub alternatives: Vec<Alternative>,
 }
 
@@ -103,13 +103,14 @@ pub const MOST_DOUBTS: usize = 40;
 const LONGEST_WORDS: usize = 200;
 
 impl Doubt {
-    /// What its best alternative gains, natural logs; 0 where that is not known.
+    /// The gain of its best alternative, natural logs; 0 where that is not known.
     #[must_use]
     pub fn gain(&self) -> f64 {
         self.alternatives.iter().filter_map(|one| one.gain).fold(0.0, f64::max)
     }
 
-    /// Takes over what a weaker doubt offers, where that lies within this one.
+    /// Takes over the alternatives of a weaker doubt that lies within this one. They are extended to the words of this
+    /// one.
     pub fn take_over(&mut self, text: &str, weaker: &Self) {
         let [from, to] = self.span;
         let around = (text.get(from..weaker.span[0]), text.get(weaker.span[1]..to));
@@ -126,8 +127,8 @@ impl Doubt {
     }
 }
 
-/// The doubts of a text, in its order and apart from each other. Of two that overlap, the stronger one stays; it takes over what
-/// the other offers in its place. What is outside the text, or within a character, is left out.
+/// The doubts of a text, in its order and without overlaps. Of two that overlap, the stronger one stays and takes over
+/// the alternatives of the other. Doubts that lie outside the text, or begin or end within a character, are left out.
 #[must_use]
 pub fn apart_in(text: &str, doubts: Vec<Doubt>) -> Vec<Doubt> {
     let trimmed = doubts.into_iter().filter_map(|doubt| trimmed(text, doubt));
@@ -185,7 +186,8 @@ fn trimmed(text: &str, doubt: Doubt) -> Option<Doubt> {
     (from < to).then_some(Doubt { span: [from, to], ..doubt })
 }
 
-/// Orders the alternatives of a doubt, the best first and before it those of which no gain is known, and leaves out those that say the same, and too many.
+/// Sorts the alternatives of a doubt: first those with an unknown gain, then by gain, the best first. Drops
+/// duplicates, alternatives that repeat the doubted words, and all beyond [`MOST_ALTERNATIVES`].
 fn tidy(text: &str, doubt: &mut Doubt) {
     let told = text[doubt.span[0]..doubt.span[1]].to_lowercase();
     let mut seen: Vec<Option<String>> = vec![Some(told)];
@@ -236,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stronger_doubt_says_what_a_weaker_one_within_it_offers() {
+    fn apart_in_gives_the_stronger_doubt_the_alternatives_of_the_weaker() {
         let doubts = vec![
             doubt([0, 19], Grade::Likely, &[(None, 5.0)]),
             doubt([14, 18], Grade::Uncertain, &[(Some("right"), 1.0), (None, 2.0)]),
@@ -251,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_the_spans_doubts_are_apart_in_order_and_in_the_text() {
+    fn apart_in_sorts_and_separates_any_spans() {
         let texts = ["", "a", "Go on.", "Türe – 門 hinter 🪑", "\u{202e}e\u{301}x . , and so on , left ."];
         let mut random = rng(7, &["doubts"]);
         for text in texts.iter().cycle().take(3000) {

@@ -1,8 +1,8 @@
-//! Models that compare texts and views.
+//! Models that compare texts and views: text encoders and grounders.
 
 use crate::{ModelError, ObjectId, View};
 
-/// Turns texts into vectors whose dot product is their similarity.
+/// Turns texts into vectors. The dot product of two vectors is the similarity of their texts.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait TextEncoder: Send + Sync {
@@ -16,7 +16,7 @@ pub trait TextEncoder: Send + Sync {
     fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError>;
 }
 
-/// Says how well phrases fit what views show.
+/// Scores how well phrases fit what views show.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait Grounder: Send + Sync {

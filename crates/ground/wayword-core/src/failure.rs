@@ -1,8 +1,8 @@
-//! The kinds of failure.
+//! The kinds of failure, which decide whether the user, a repair of the data, or another try helps.
 
 use serde::{Deserialize, Serialize};
 
-/// What can be done about a failure. A text that fails a check is not a failure: the check did its work.
+/// The kind of a failure, by its remedy. A text that fails a check is not a failure: the check did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Failure {

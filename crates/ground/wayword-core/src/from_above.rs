@@ -1,4 +1,4 @@
-//! What a storey looks like from above.
+//! Pictures of a storey from above, for maps.
 
 use crate::Image;
 use std::sync::Arc;

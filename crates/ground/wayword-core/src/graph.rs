@@ -1,4 +1,4 @@
-//! The viewpoint graph that every platform offers.
+//! The viewpoint graph that every platform offers: places where an agent can be, and straight walks between them.
 
 use crate::{Heading, Path, ViewpointId, path::Stop};
 use glam::DVec3;
@@ -67,7 +67,7 @@ impl ViewpointGraph {
         Ok(())
     }
 
-    /// Says how high the floor under a node is, metres, world frame. What is not finite says nothing.
+    /// Sets the height of the floor under a node, metres, world frame. A height that is not finite clears it.
     ///
     /// # Errors
     /// When the node is not in the graph.
@@ -77,7 +77,7 @@ impl ViewpointGraph {
         Ok(())
     }
 
-    /// Joins two nodes; the edge's length is their straight distance. Joining twice changes nothing.
+    /// Joins two nodes; the edge's length is their straight distance. Joining them twice leaves one edge.
     ///
     /// # Errors
     /// When one of them is not in the graph.
@@ -162,7 +162,7 @@ impl ViewpointGraph {
         Ok(lengths.into_iter().map(|(node, length_m)| (&self.graph[node].id, length_m)).collect())
     }
 
-    /// The shortest way from one node to another, or `None` where there is none.
+    /// The shortest route from one node to another, or `None` if they are not connected.
     ///
     /// # Errors
     /// When a node is not in the graph.
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shorter_way_round_is_taken() {
+    fn shortest_path_takes_the_shorter_way_round() {
         let square = graph(&[(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (0.0, 1.0)], &[(0, 1), (1, 2), (2, 3), (3, 0)]);
         let route = square.shortest_path(&id(0), &id(2)).unwrap().unwrap();
         assert!((route.length_m - 4.0).abs() < 1e-12);

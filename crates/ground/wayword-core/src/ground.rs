@@ -1,4 +1,4 @@
-//! Walkable ground, where a platform knows more of it than its viewpoints.
+//! Walkable ground between viewpoints, for platforms that know it: routes on foot and islands.
 
 use glam::DVec3;
 use serde::Serialize;
@@ -22,23 +22,23 @@ pub struct Island {
     pub area_m2: f64,
     /// The height of most of it in the world frame, metres.
     pub height_m: f64,
-    /// What is over most of it.
+    /// The cover over most of it.
     pub cover: Cover,
     /// Whether random paths use it.
     pub is_walked: bool,
 }
 
-/// What is over a piece of ground.
+/// The cover over a piece of ground: ceiling, sky, or too low a ceiling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cover {
-    /// A ceiling under which people can stand.
+    /// A ceiling that is high enough to stand under.
     Ceiling,
     /// The open sky.
     Sky,
     /// The open sky, with rooms below: it is a roof.
     OnRoof,
-    /// A ceiling under which nobody can stand upright.
+    /// A ceiling that is too low to stand under.
     Low,
 }
 

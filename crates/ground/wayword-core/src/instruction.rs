@@ -1,4 +1,4 @@
-//! An instruction, with links to its evidence.
+//! An instruction, with its verdict and with links from its words to the evidence.
 
 use crate::{Ambiguity, Finding, Verdict};
 use serde::{Deserialize, Serialize};
@@ -20,25 +20,25 @@ pub struct Instruction {
     pub verdict: Verdict,
     /// Each check's outcome.
     pub findings: Vec<Finding>,
-    /// What the text may mean; `None` where nobody looked, as in older versions.
+    /// What the text may mean; `None` where it was not examined, as in records of older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ambiguity: Option<Ambiguity>,
     /// How it came about.
     pub provenance: Provenance,
 }
 
-/// Words of an instruction that speak of something on the path.
+/// Words of an instruction that name something on the path.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mention {
     /// Byte range in the text.
     pub span: [usize; 2],
-    /// What they speak of.
+    /// The kind of thing that they name.
     pub kind: MentionKind,
     /// The frame that has the evidence.
     pub frame: usize,
 }
 
-/// What words of an instruction speak of.
+/// The kind of thing that words of an instruction name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MentionKind {
@@ -59,18 +59,18 @@ pub enum MentionKind {
 pub struct Provenance {
     /// Version of Wayword that made it.
     pub wayword: String,
-    /// Who asked about the frames (`rules`, `provider/model`).
+    /// The asker of questions about the frames (`rules`, `provider/model`).
     pub asker: String,
-    /// Who answered (`labels` is ground truth, not perception).
+    /// The answerer (`labels` is ground truth, not perception).
     pub answerer: String,
-    /// Which detector looked for things in the pictures, and what its scores mean.
+    /// The detector that looked for things in the pictures, and the meaning of its scores.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detector: Option<String>,
-    /// Who summed the answers up.
+    /// The summariser of the answers.
     pub summariser: String,
-    /// Who wrote the text.
+    /// The writer of the text.
     pub writer: String,
-    /// What the checks compared it with (`labels`, `captions`).
+    /// The evidence that the checks compared it with (`labels`, `captions`).
     pub checked_against: String,
     /// The run's seed.
     pub seed: u64,
@@ -81,13 +81,13 @@ pub struct Provenance {
     pub prompts_hash: Option<String>,
     /// How often it was written again because a check failed.
     pub repairs: u32,
-    /// The writer whose texts all failed their checks, where another writer finished for it.
+    /// The writer that gave up because all its texts failed their checks, where another writer finished for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finished_for: Option<String>,
     /// How it was chosen, where several texts were written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<Chosen>,
-    /// Whether a target was given that nobody saw from the last frame: the writer knew its name alone.
+    /// Whether the path has a target that was not visible from the last frame: the writer knew its name alone.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub target_undescribed: bool,
 }
@@ -102,11 +102,11 @@ pub struct Chosen {
     /// Which of them it is, from 0.
     #[serde(default)]
     pub number: u32,
-    /// What chose.
+    /// The judge that chose.
     pub by: ChosenBy,
 }
 
-/// What chose a text among several.
+/// The judge that chose a text among several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChosenBy {

@@ -4,7 +4,7 @@
 //! **World frame**: right-handed, metres, z up. A heading is in radians, 0 along +y, clockwise seen from above.
 //! Elevation is positive upwards. Each platform converts its own frame to this one.
 //!
-//! Architecture invariant: nothing here reads a file, a clock or a network, or depends on a particular model or
+//! Architecture invariant: this crate reads no file, clock or network, and does not depend on a particular model or
 //! platform.
 
 pub mod action;

@@ -4,13 +4,13 @@ use crate::{Failure, Image};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Who speaks a message.
+/// The speaker of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// The program, which says how the model is to behave.
+    /// The program, with instructions on how the model is to behave.
     System,
-    /// Who asks the model.
+    /// The one that asks the model.
     User,
     /// The model itself, in an earlier reply.
     Assistant,
@@ -19,7 +19,7 @@ pub enum Role {
 /// One message of a conversation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// Who speaks it.
+    /// The speaker.
     pub role: Role,
     /// Its words.
     pub text: String,
@@ -49,7 +49,8 @@ pub struct Request {
     pub replicate: u32,
     /// The form of the reply, where it is to be JSON. Services that can hold a model to it do.
     pub schema: Option<Schema>,
-    /// The tools that the model may call; empty for none. The prompt has to say how to call them in words, because not
+    /// The tools that the model may call; empty for none. The prompt has to explain in words how to call them, because
+    /// not
     /// every service has tool calls.
     pub tools: &'static [Tool],
 }
@@ -59,7 +60,7 @@ pub struct Request {
 pub struct Tool {
     /// Its name: letters and underscores.
     pub name: &'static str,
-    /// What it does, for the model.
+    /// Its purpose, in words for the model.
     pub does: &'static str,
     /// The form of its arguments: the JSON Schema of an object, as text.
     pub arguments: &'static str,
@@ -74,19 +75,19 @@ pub struct Schema {
     pub json: &'static str,
 }
 
-/// What a model said.
+/// A model's reply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reply {
-    /// Its words, without any reasoning that the service marks as such. After them, each call of a tool is a line of its
-    /// own, as [`tool_line`] makes it: a model behind a service without tool calls writes the same line itself.
+    /// Its words, without reasoning that the service marks. After them, each call of a tool is a line of its own, as
+    /// [`tool_line`] makes it: a model behind a service without tool calls writes the same line itself.
     pub text: String,
     /// Why it ended.
     pub finish: Finish,
-    /// What it took; `None` where nothing counts that.
+    /// Tokens, price and time; `None` where the service does not count them.
     pub usage: Option<Usage>,
 }
 
-/// What a call of a model took.
+/// The usage of one call of a model.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Usage {
     /// Tokens of the request.
@@ -116,7 +117,7 @@ pub enum Finish {
     Length,
 }
 
-/// Answers text with text.
+/// The roles `ask`, `summarise` and `write`: answers text with text.
 ///
 /// Blocking, object-safe and batching; threads belong to the caller.
 pub trait LanguageModel: Send + Sync {
@@ -127,17 +128,17 @@ pub trait LanguageModel: Send + Sync {
     fn complete(&self, requests: &[Request]) -> Vec<Result<Reply, ModelError>>;
 }
 
-/// A role could not do what it was asked.
+/// Why a role could not do what it was asked.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ModelError {
-    /// The view lacks what this role looks at.
+    /// The view lacks labels or a picture, which this role needs.
     #[error("{name} needs {needs}, but this view has none: {hint}")]
     NothingToSee {
-        /// Who: the model's name, or the flag with what it names, as in `--see labels`.
+        /// The role: a model's name, or the flag with its value, as in `--see labels`.
         name: String,
         /// Labels, or an image.
         needs: &'static str,
-        /// What to do.
+        /// Advice for the user.
         hint: &'static str,
     },
     /// This request failed after every sensible attempt. Other requests may succeed, and so may this one later.
@@ -145,7 +146,7 @@ pub enum ModelError {
     Failed {
         /// `provider/model`.
         model: String,
-        /// What happened.
+        /// The reason.
         reason: String,
     },
     /// The service did not answer, although it was tried several times.
@@ -153,7 +154,7 @@ pub enum ModelError {
     Lost {
         /// `provider/model`.
         model: String,
-        /// What happened.
+        /// The reason.
         reason: String,
     },
     /// No more requests are possible for now: a budget is spent, a key is refused, or the user has interrupted. The

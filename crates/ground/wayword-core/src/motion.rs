@@ -1,4 +1,4 @@
-//! What happens between two frames of a path, and the words for it.
+//! The moves between two frames of a path, and the words for them: how large a "left" is, and how high a climb.
 
 use crate::{Pose, heading::Side};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ pub enum Motion {
     /// The frames' poses are those of the path.
     #[default]
     Known,
-    /// Only the order of the frames is known, and their poses mean nothing. The program states no turn, distance,
+    /// Only the order of the frames is known, and their poses are fillers. The program states no turn, distance,
     /// length or storey of such a path and draws no map of it.
     Unknown,
 }
@@ -86,13 +86,13 @@ pub const AROUND_DEG: f64 = 150.0;
 pub const CLIMB_M: f64 = 0.5;
 
 /// The smallest turn for which "turn around" is not a mistake in a third-party text, degrees. People say it as soon as
-/// they end up looking back more than sideways. Wayword itself says it only from [`AROUND_DEG`] on.
+/// they end up looking back more than sideways. Wayword itself uses the words only from [`AROUND_DEG`] on.
 pub const AROUND_AT_LEAST_DEG: f64 = 120.0;
 /// The smallest bend over several moves that may be called one turn, degrees. No single move of it need be a turn, but
 /// together they must be a clear one.
 pub const BEND_DEG: f64 = 60.0;
-/// Least turn of each move of such a bend, degrees. Less than that is walking straight, and a bend has no straight
-/// stretch.
+/// Least turn of each move of such a bend, degrees. A smaller turn counts as walking straight, and a bend has no
+/// straight stretch.
 pub const BEND_STEP_DEG: f64 = 10.0;
 /// Longest such bend, moves: a corner is rounded in two or three hops between viewpoints.
 pub const BEND_MOVES: usize = 3;

@@ -1,9 +1,9 @@
-//! Captions of the views from one frame.
+//! The observation of one frame: the captions of its views, and a summary of them.
 
 use crate::{Caption, Gaze, Heading, Side, Sighting};
 use serde::{Deserialize, Serialize};
 
-/// A captioned view.
+/// A view in one direction from a frame, with its caption.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Look {
     /// The direction and width of the view.
@@ -12,21 +12,21 @@ pub struct Look {
     pub caption: Caption,
 }
 
-/// What was seen from one frame.
+/// All captions of one frame.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
-    /// One look where the central view was captioned, four where the panorama was.
+    /// One view where only the central one was captioned, four where the panorama was.
     pub looks: Vec<Look>,
     /// The frame in words: the caption of the only look, or the four condensed to under 20 words.
     pub summary: String,
-    /// Who condensed them, where the run's summariser failed and another did.
+    /// The summariser, where the run's own failed and another one condensed them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
 
 impl Look {
-    /// On which side of an agent that looks along `heading` an object of this view is said to be; `None` where the
-    /// caption gives no place.
+    /// The side of an agent that looks along `heading` on which an object of this view lies; `None` where the caption
+    /// gives no place.
     #[must_use]
     pub fn side_of(&self, sighting: &Sighting, heading: Heading) -> Option<Side> {
         let place = sighting.place?;

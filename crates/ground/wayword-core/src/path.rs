@@ -47,8 +47,9 @@ pub struct Target {
     /// Whether something of the same name is visible at the last frame too.
     #[serde(default)]
     pub has_namesake: bool,
-    /// Ways to describe it to somebody who knows the whole building, best first: the shortest that leave no other object,
-    /// or else those that leave fewest. Empty where nothing is known of the building.
+    /// Ways to describe it to a person who knows the whole building, best first: the shortest that leave no other
+    /// object,
+    /// or else those that leave fewest. Empty where the platform knows no rooms or objects of the building.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub descriptions: Vec<Description>,
     /// Whether it certainly hangs on a wall.
@@ -64,10 +65,10 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// What is said of an object beside its name and the kind of its room.
+/// Facts about an object that distinguish it from others, in addition to its name and the kind of its room.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Description {
-    /// What is true of it.
+    /// The facts; all are true of the object.
     pub by: Vec<Distinction>,
     /// How many objects of the building fit all of that, the object itself counted.
     pub leaves: usize,
@@ -95,7 +96,7 @@ pub enum Distinction {
         /// Which side.
         side: Side,
     },
-    /// It stands nearer to an object of this (unique) name than any namesake.
+    /// It is nearer to an object of this (unique) name than any namesake.
     NextTo {
         /// Name of that neighbour.
         neighbour: String,
@@ -107,12 +108,12 @@ pub enum Distinction {
     },
     /// Where it is from an object of this name, as seen from the last frame.
     Related {
-        /// How they stand to each other.
+        /// The relation between the two.
         relation: Relation,
         /// Name of the other.
         to: String,
     },
-    /// It stands between two objects of these names.
+    /// It is between two objects of these names.
     Between {
         /// One of them.
         one: String,
@@ -128,7 +129,7 @@ pub enum Distinction {
         /// From the left, or from the right.
         from: Side,
     },
-    /// It hangs or stands highest among its namesakes, or lowest.
+    /// It is the highest among its namesakes, or the lowest.
     Height {
         /// Highest where true, lowest where false.
         highest: bool,
@@ -138,23 +139,23 @@ pub enum Distinction {
         /// The lowest is 1.
         level: u32,
     },
-    /// Its room lies beside a room of this name.
+    /// Its room is next to a room of this name.
     RoomBy {
         /// The other room.
         room: String,
     },
-    /// A thing of this name stands in its room, and in no other room of the kind.
+    /// Its room contains a thing of this name, and no other room of the kind does.
     RoomWith {
         /// Name of the thing.
         thing: String,
     },
 }
 
-/// How an object stands to another that is near it.
+/// The spatial relation of an object to another that is near it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Relation {
-    /// Beside it, or close to it.
+    /// Next to it, or close to it.
     Near,
     /// Over it.
     Above,
@@ -184,13 +185,13 @@ impl Relation {
 }
 
 impl Distinction {
-    /// Whether it tells which room is meant, and not which object in the room.
+    /// Whether it distinguishes the room, and not the object in the room.
     #[must_use]
     pub fn is_of_room(&self) -> bool {
         matches!(self, Self::Level { .. } | Self::RoomBy { .. } | Self::RoomWith { .. })
     }
 
-    /// The rooms and things that it names beside the object.
+    /// The other rooms and things that it names, in addition to the object.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let (one, other) = match self {
             Self::NextTo { neighbour: name }
@@ -203,7 +204,7 @@ impl Distinction {
         one.into_iter().chain(other).map(String::as_str)
     }
 
-    /// What is said of the object, behind "it is": "next to the bed".
+    /// Words that follow "it is": "next to the bed".
     #[must_use]
     pub fn predicate(&self) -> String {
         let side = |side: Side| match side {
@@ -232,7 +233,7 @@ impl Distinction {
         }
     }
 
-    /// Whether it holds only for somebody at the last frame who looks along the path.
+    /// Whether it is true only for a person at the last frame who looks along the path.
     #[must_use]
     pub fn needs_pose(&self) -> bool {
         use Relation::{LeftOf, RightOf};
@@ -242,8 +243,8 @@ impl Distinction {
 }
 
 impl Frame {
-    /// A key that is equal for frames of one place, because these see the same. It holds the name beside the position,
-    /// because frames without poses differ only by name.
+    /// A key that is equal for frames at one place, which see the same. It contains the viewpoint's name as well as
+    /// the position, because frames without poses differ only by name.
     #[must_use]
     pub fn place(&self) -> ([u64; 3], Option<ViewpointId>) {
         (self.pose.position.to_array().map(f64::to_bits), self.viewpoint.clone())
@@ -339,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_without_poses_are_told_apart_by_their_names() {
+    fn place_differs_by_name_where_frames_have_no_poses() {
         let frame = |name: &str| Frame {
             pose: Pose::level(DVec3::ZERO, Heading::NORTH),
             viewpoint: Some(ViewpointId::new(name).unwrap()),
@@ -350,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn of_an_unknown_motion_there_are_neither_moves_nor_a_length() {
+    fn unknown_motion_has_no_moves_and_no_length() {
         let known = path(vec![stop(0.0, 0.0, 0.0), stop(2.0, 0.0, 0.0)], None);
         let unknown = Path { motion: Motion::Unknown, ..known.clone() };
         assert_eq!((unknown.moves(), unknown.length_m()), (Vec::new(), None));

@@ -1,4 +1,4 @@
-//! What a platform must offer.
+//! The trait that every platform implements: scenes, their graphs, views, labels and ground.
 
 use crate::{
     Condition, Depth, Failure, Frame, FromAbove, Gaze, Island, ObjectId, Path, Placed, SceneId, View, ViewpointGraph,
@@ -35,13 +35,13 @@ pub trait Platform: Send + Sync {
         Ok(())
     }
 
-    /// The name by which it calls a scene that it knows by several; else the same name.
+    /// The platform's own name for a scene that it knows by several names; else the same name.
     fn called(&self, scene: &SceneId) -> SceneId {
         scene.clone()
     }
 
     /// The scenes of its data that [`examine`](Self::examine) knows, sorted: those that it can offer, and those that
-    /// something is wrong with. Empty where it cannot tell before it is asked for views.
+    /// something is wrong with. Empty where it cannot know before it is asked for views.
     ///
     /// # Errors
     /// When its data cannot be read.
@@ -49,8 +49,8 @@ pub trait Platform: Send + Sync {
         Ok(Vec::new())
     }
 
-    /// Reads the files of one of its [`candidates`](Self::candidates), and says what they offer. A scene that cannot be
-    /// used is no error here. `None` where the platform cannot tell.
+    /// Reads the files of one of its [`candidates`](Self::candidates), and reports what they offer. A scene that
+    /// cannot be used is no error here. `None` where the platform cannot find out.
     ///
     /// # Errors
     /// When the disk that holds the data has gone away.
@@ -61,17 +61,17 @@ pub trait Platform: Send + Sync {
     /// The viewpoint graph of a scene.
     ///
     /// # Errors
-    /// When there is no such scene or its data cannot be read.
+    /// When the scene does not exist or its data cannot be read.
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError>;
 
     /// A random path that keeps to `request`; the same seed gives the same path. Where the platform knows objects, the
     /// path's target is visible at its end.
     ///
     /// # Errors
-    /// When the scene holds no such path, or cannot be read.
+    /// When the scene has no path that fits, or cannot be read.
     fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError>;
 
-    /// What is seen from a frame.
+    /// The view from a frame in one direction.
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.
@@ -85,8 +85,8 @@ pub trait Platform: Send + Sync {
         self.look(scene, from, gaze)
     }
 
-    /// How far away is what [`look`](Self::look) shows from a frame, level and for the same gaze; `None` where the platform
-    /// does not know. It is apart from the view, so that only those who want it pay for it.
+    /// The distances of what [`look`](Self::look) shows from a frame, level and for the same gaze; `None` where the
+    /// platform does not know them. It is separate from the view, so that only callers that want it pay for it.
     ///
     /// # Errors
     /// When the frame is not a place of the scene, or its data cannot be read.
@@ -95,10 +95,10 @@ pub trait Platform: Send + Sync {
     }
 
     /// A storey (the lowest is 1) straight from above, without its ceiling and all that is over it; `None` where the
-    /// platform has no such picture, or no such storey.
+    /// platform has no picture of it, or the scene has no storey of this number.
     ///
     /// # Errors
-    /// When there is no such scene or its data cannot be read.
+    /// When the scene does not exist or its data cannot be read.
     fn look_down(&self, _scene: &SceneId, _level: u32) -> Result<Option<FromAbove>, PlatformError> {
         Ok(None)
     }
@@ -119,7 +119,7 @@ pub trait Platform: Send + Sync {
     /// the platform does not know the ground, or there is no way.
     ///
     /// # Errors
-    /// When there is no such scene or its data cannot be read.
+    /// When the scene does not exist or its data cannot be read.
     fn way(&self, _scene: &SceneId, _from: &Frame, _to: &Frame) -> Result<Option<Way>, PlatformError> {
         Ok(None)
     }
@@ -127,7 +127,7 @@ pub trait Platform: Send + Sync {
     /// The islands of a scene, the largest first; empty where the platform does not know the ground.
     ///
     /// # Errors
-    /// When there is no such scene or its data cannot be read.
+    /// When the scene does not exist or its data cannot be read.
     fn islands(&self, _scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
         Ok(Vec::new())
     }
@@ -136,13 +136,13 @@ pub trait Platform: Send + Sync {
     /// it knows no more than the labels of its views.
     ///
     /// # Errors
-    /// When there is no such scene or its data cannot be read.
+    /// When the scene does not exist or its data cannot be read.
     fn listed_objects(&self, _scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
         Ok(Vec::new())
     }
 
-    /// Whether the labels of its views list everything that is seen there. Where they do not, what they do not list may
-    /// be there all the same.
+    /// Whether the labels of its views list everything that is visible. If not, a thing may be there that no label
+    /// names.
     fn lists_everything(&self) -> bool {
         true
     }
@@ -150,7 +150,7 @@ pub trait Platform: Send + Sync {
     /// The file that a scene is read from, where Habitat reads the same file; `None` elsewhere.
     ///
     /// # Errors
-    /// When there is no such scene.
+    /// When the scene does not exist.
     fn scene_file(&self, _scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
         Ok(None)
     }
@@ -159,13 +159,13 @@ pub trait Platform: Send + Sync {
     /// run keeps their hash, so that it is not continued with other data.
     ///
     /// # Errors
-    /// When there is no such scene, or a folder cannot be read.
+    /// When the scene does not exist, or a folder cannot be read.
     fn files(&self, _scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
         Ok(Vec::new())
     }
 }
 
-/// Makes a pointer to a platform a platform.
+/// Implements [`Platform`] for a pointer to a platform.
 macro_rules! platform_behind {
     ($pointer:ty) => {
         impl<P: Platform + ?Sized> Platform for $pointer {
@@ -264,7 +264,7 @@ macro_rules! platform_behind {
 platform_behind!(Box<P>);
 platform_behind!(&P);
 
-/// What a random path has to be like.
+/// The lengths that a random path may have.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathRequest {
     /// Number of hops on the viewpoint graph. Paths of a continuous platform have no hops: there only the length
@@ -289,7 +289,7 @@ impl PathRequest {
     }
 }
 
-/// A platform cannot give what it was asked for.
+/// Why a platform cannot give what it was asked for.
 #[derive(Debug, thiserror::Error)]
 pub enum PlatformError {
     /// A scene that it does not have.
@@ -297,7 +297,7 @@ pub enum PlatformError {
     UnknownScene {
         /// Its name.
         scene: String,
-        /// What to do.
+        /// Advice for the user.
         hint: String,
     },
     /// A scene that cannot be drawn.
@@ -329,7 +329,7 @@ pub enum PlatformError {
     Graph {
         /// The scene.
         scene: SceneId,
-        /// What is wrong with it.
+        /// The mistake.
         source: GraphError,
     },
     /// No path of the kind that was asked for.
@@ -337,9 +337,9 @@ pub enum PlatformError {
     NoSuchPath {
         /// The scene.
         scene: SceneId,
-        /// What was asked for, in words.
+        /// The request, in words.
         request: String,
-        /// What to do.
+        /// Advice for the user.
         hint: &'static str,
     },
     /// A file that cannot be read or used.
@@ -347,9 +347,9 @@ pub enum PlatformError {
     File {
         /// Which file.
         file: PathBuf,
-        /// What is wrong, with item, field or line.
+        /// The mistake, with item, field or line.
         reason: String,
-        /// What to do.
+        /// Advice for the user.
         hint: &'static str,
     },
     /// A file that is not there.
@@ -357,7 +357,7 @@ pub enum PlatformError {
     NoFile {
         /// Which file.
         file: PathBuf,
-        /// What to do.
+        /// Advice for the user.
         hint: &'static str,
     },
     /// A platform that is another program, or the disk that holds its data, went away while it was in use.
@@ -365,9 +365,9 @@ pub enum PlatformError {
     Lost {
         /// Its program or address, or the file.
         world: String,
-        /// What happened.
+        /// The reason.
         reason: String,
-        /// What to do.
+        /// Advice for the user.
         hint: &'static str,
     },
 }
@@ -399,7 +399,7 @@ impl PlatformError {
         }
     }
 
-    /// The error for a frame at which nobody can stand in the scene. It names the frame's viewpoint, or its position
+    /// The error for a frame at a place where an agent cannot be. It names the frame's viewpoint, or its position
     /// where it has none.
     #[must_use]
     pub fn nowhere(scene: &SceneId, frame: &Frame) -> Self {
@@ -413,7 +413,7 @@ impl PlatformError {
     }
 }
 
-/// Whether the system says that a disk has gone away or fails: a network disk, or a broken one.
+/// Whether the system reports that a disk has gone away or fails: a network disk, or a broken one.
 #[must_use]
 pub fn is_lost_disk(error: &io::Error) -> bool {
     use io::ErrorKind::{

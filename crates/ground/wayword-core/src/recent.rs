@@ -1,4 +1,4 @@
-//! A small cache of values, the least recently used of which goes first.
+//! A small cache that drops the value which was not used for the longest time.
 
 use hashlink::LruCache;
 use std::{
@@ -50,7 +50,7 @@ impl<K: Clone + Eq + Hash, V> Recent<K, V> {
     /// others.
     ///
     /// # Errors
-    /// When it cannot be made. Then nothing is kept, and the next caller tries again.
+    /// When it cannot be made. Then the cache stays as it is, and the next caller tries again.
     pub fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         let turn = {
             let mut shelf = self.shelf();
@@ -113,7 +113,7 @@ mod tests {
     };
 
     #[test]
-    fn what_was_asked_for_lately_is_not_made_again() {
+    fn get_or_make_keeps_recent_values() {
         let recent = Recent::new(2);
         let made = Cell::new(0);
         let get = |key: u32| {
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_used_longest_goes_first() {
+    fn the_value_unused_for_longest_is_dropped_first() {
         let recent = Recent::new(2);
         recent.put("a", 1);
         recent.put("b", 2);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_put_twice_counts_once_and_the_first_one_stays() {
+    fn put_keeps_the_first_of_two_values() {
         let recent = Recent::new(2);
         assert_eq!([1, 2, 3].map(|number| *recent.put("a", number)), [1, 1, 1]);
         recent.put("b", 4);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn what_failed_is_not_kept() {
+    fn get_or_make_keeps_no_failure() {
         let recent = Recent::new(2);
         assert!(recent.get_or_make(1, || Err(())).is_err());
         assert_eq!(recent.get(&1), None);
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn who_makes_a_value_may_put_others() {
+    fn make_may_put_other_values() {
         let recent = Recent::new(4);
         let made = recent.get_or_make(1, || {
             recent.put(2, "read along");

@@ -1,4 +1,4 @@
-//! Styles as data: the kinds of instruction.
+//! Styles: kinds of instruction, described by reference texts and by rules. They are data, which users can add to.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,22 +11,23 @@ pub struct Style {
     /// Texts in this style. The writer imitates their shape and may not copy them.
     #[serde(default)]
     pub references: Vec<String>,
-    /// How many words its texts have: a writer draws from these. Where there are none, the references say it.
+    /// How many words its texts have: a writer draws from these. Where there are none, the lengths of the references count.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub words: Vec<usize>,
-    /// What a writer by rules chooses by, beside how people of the style word things.
+    /// How a writer by rules chooses among wordings, apart from how often people of the style use them.
     #[serde(default, skip_serializing_if = "Choice::is_open")]
     pub choice: Choice,
-    /// What a text of this style must keep to.
+    /// The rules for a text of this style.
     #[serde(default)]
     pub constraints: Constraints,
 }
 
-/// What no reference says. A field that is `None` is left to the program.
+/// Choices that references cannot show. A field that is `None` is left to the program.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Choice {
-    /// In which share of texts the target is described until nothing else fits, 0 to 1. The others say as much as people do.
+    /// In which share of texts the target is described until no other object fits, 0 to 1. The others have as many
+    /// details as people give.
     pub sure: Option<f64>,
     /// By which power of their share wordings are drawn, 0 to 10. At 1 as people do; above it, the commonest oftener.
     pub sharp: Option<f64>,
@@ -38,7 +39,7 @@ impl Choice {
     }
 }
 
-/// Rules that a text can be checked against. A field that is `None` or false demands nothing.
+/// Rules that a text of a style is checked against. A field that is `None` or false sets no rule.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Constraints {

@@ -1,9 +1,9 @@
-//! What is known of all viewpoints of a scene.
+//! A scene at a glance: all its viewpoints with their rooms, objects and neighbours.
 
 use crate::{DVec3, Label, ObjectId, ViewpointGraph, ViewpointId, graph::GraphError};
 use std::collections::BTreeMap;
 
-/// What is known of a scene: its viewpoints, the ways between them, and what is at each.
+/// All viewpoints of a scene, the edges between them, and what each one shows.
 #[derive(Debug, Clone, Default)]
 pub struct Survey {
     viewpoints: Vec<Surveyed>,
@@ -22,7 +22,7 @@ pub struct Placed {
     pub position: DVec3,
 }
 
-/// What is known of one viewpoint.
+/// One viewpoint with what the platform knows of it.
 #[derive(Debug, Clone)]
 pub struct Surveyed {
     /// Its name.
@@ -33,13 +33,13 @@ pub struct Surveyed {
     pub floor_m: Option<f64>,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
-    /// Places of its neighbours in the survey.
+    /// Its neighbours, as indices into [`Survey::viewpoints`].
     pub neighbours: Vec<usize>,
-    /// What the platform knows about it.
+    /// The room and the objects that the platform knows there.
     pub known: Known,
 }
 
-/// What a platform knows to be at a viewpoint.
+/// The room and the objects that a platform reports for a viewpoint.
 #[derive(Debug, Clone, Default)]
 pub struct Known {
     /// The room ("living room"), where it has a name.
@@ -49,7 +49,7 @@ pub struct Known {
 }
 
 impl Survey {
-    /// Surveys a graph; `known` says what is at a viewpoint.
+    /// Surveys a graph; `known` reports the room and the objects at a viewpoint.
     ///
     /// # Errors
     /// When `known` fails, or an edge of the graph leads nowhere.
@@ -94,7 +94,7 @@ impl Survey {
         &self.viewpoints
     }
 
-    /// The place of a viewpoint in the survey.
+    /// The index of a viewpoint in [`Self::viewpoints`].
     #[must_use]
     pub fn place(&self, id: &ViewpointId) -> Option<usize> {
         self.index.get(id).copied()

@@ -1,4 +1,4 @@
-//! What a check says about a text.
+//! The outcomes of checks: one verdict per check, and one for the whole text.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 pub enum Verdict {
     /// Checked against evidence, and right.
     Pass,
-    /// There was nothing to check against.
+    /// No evidence decides it.
     Unverified,
     /// Checked, and wrong.
     Fail,
 }
 
-/// What is checked.
+/// The rules that a text is checked by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Check {
@@ -32,7 +32,7 @@ pub enum Check {
     Floors,
     /// The text leads along its path, and not elsewhere.
     Route,
-    /// The program understands what the text says.
+    /// The program understands all clauses of the text.
     Coverage,
     /// No long run of words is shared with the references, and no shorter one that is not common.
     Leak,

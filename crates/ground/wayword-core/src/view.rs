@@ -1,4 +1,4 @@
-//! What is seen from a pose.
+//! Views: what an eye sees from a pose in one direction.
 
 use crate::{Heading, Image, Label, Pose, Side, heading::Compass};
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ pub struct Gaze {
     pub horizontal_fov_rad: f64,
 }
 
-/// What is seen from a pose with a field of view.
+/// A view from a pose: the picture, and what the platform knows about it.
 #[derive(Debug, Clone)]
 pub struct View {
     /// Where the eye is, and which way it looks.
@@ -25,12 +25,12 @@ pub struct View {
     truth: Option<GroundTruth>,
 }
 
-/// What the platform itself knows about a view.
+/// The ground truth of a view: labels and a room that the platform itself knows.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroundTruth {
-    /// Objects whose box's centre lies in the view.
+    /// Objects of which the box's centre lies in the view.
     pub labels: Vec<Label>,
-    /// Whether the platform lists the objects here. Where it does not, a lack of labels says nothing.
+    /// Whether the platform lists the objects here. If not, missing labels are no evidence of absence.
     pub lists_objects: bool,
     /// The room in which the eye is ("living room").
     pub room: Option<String>,
@@ -66,26 +66,26 @@ impl Gaze {
 }
 
 impl View {
-    /// A view. `truth` is `None` where the platform knows nothing but the picture.
+    /// A view. `truth` is `None` where the platform knows only the picture.
     #[must_use]
     pub fn new(pose: Pose, horizontal_fov_rad: f64, image: Option<Arc<Image>>, truth: Option<GroundTruth>) -> Self {
         Self { pose, horizontal_fov_rad, image, truth }
     }
 
-    /// Whether nothing is known of it, as where a camera did not look.
+    /// Whether it has neither a picture nor ground truth, as where a camera did not look.
     #[must_use]
     pub fn is_blank(&self) -> bool {
         self.image.is_none() && self.truth.is_none()
     }
 
-    /// What the platform knows. Only `labels` as a role and the checks' evidence may use it. The program's invariants
+    /// The ground truth. Only `labels` as a role and the checks' evidence may use it. The program's invariants
     /// test keeps every other role to the picture.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&GroundTruth> {
         self.truth.as_ref()
     }
 
-    /// The objects whose outline in the picture is known. They serve only to say which object a box is of: REVERIE's
+    /// The objects with a known outline in the picture. They serve only to find the object that a box is of: REVERIE's
     /// task gives an agent the candidates' boxes in the same way.
     pub(crate) fn outlines(&self) -> impl Iterator<Item = &Label> {
         self.truth.iter().flat_map(|truth| &truth.labels).filter(|label| label.box_px.is_some())
