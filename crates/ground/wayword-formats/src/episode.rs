@@ -1,4 +1,5 @@
-//! The item that every format's reader returns: a path and its instructions.
+//! The item that every format's reader returns: a path and its instructions. Fields that were read keep their
+//! spelling, so that an unchanged item is written as it was.
 
 use crate::item;
 use serde_json::{Map, Value};
@@ -18,20 +19,20 @@ pub struct Episode {
     /// Positions on the floor (not the eye's), world frame, metres, from start to goal. Only VLN-CE has them; empty
     /// elsewhere.
     pub floor_positions: Vec<DVec3>,
-    /// What a VLN-CE file says to Habitat of the scene and the distance. Only VLN-CE's writer uses it.
+    /// What Habitat needs to know of the scene and the distance. Only VLN-CE's writer uses it.
     pub in_habitat: InHabitat,
-    /// Which way the agent looks before the first hop. `None` where the file does not say.
+    /// Which way the agent looks before the first hop. `None` where the file does not give it.
     pub start_heading: Option<Heading>,
     /// The object of the closing task, where the item has one (REVERIE).
     pub target_object: Option<ObjectId>,
-    /// The part of the dataset that it belongs to ("train", "val_seen"), where the item itself says so.
+    /// The part of the dataset that it belongs to ("train", "val_seen"), where the item itself names it.
     pub split: Option<String>,
     /// The path's instructions; empty where it has none yet.
     pub instructions: Vec<String>,
     /// The language of each instruction that was read, as its file tags it: "en-IN", "hi-IN" (RxR; VLN-CE where its
     /// episodes come from RxR). Empty where the file tags none.
     pub languages: Vec<String>,
-    /// The ids of each instruction's tokens, for agents whose loaders ask for them: written as `instr_encodings` (RxR:
+    /// The ids of each instruction's tokens, for agents that load them: written as `instr_encodings` (RxR:
     /// `instr_encoding`). Empty where there are none; a file's own ids are kept as unknown fields are.
     pub encodings: Vec<Vec<u32>>,
     /// Fields that the format does not name, in the order of the file. Written back where the loaders accept them (R2R,
@@ -42,12 +43,12 @@ pub struct Episode {
     pub(crate) as_read: Map<String, Value>,
 }
 
-/// What a platform knows of an item that Habitat needs. Every field has a default.
+/// Facts about an item that Habitat needs and only the platform knows. Every field has a default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct InHabitat {
     /// VLN-CE's `scene_id`: the scene's file below the folder of scenes. `mp3d/SCENE/SCENE.glb` where it is `None`.
     pub scene_id: Option<String>,
-    /// What the user has to put there first, in words, where it is not a dataset's file.
+    /// Files that the user has to put there first, in words, where the scene is not a dataset's file.
     pub scene_needs: Option<String>,
     /// Shortest distance on foot from start to goal over the scene's navmesh, metres.
     pub geodesic_m: Option<f64>,
@@ -97,8 +98,8 @@ impl Episode {
     }
 
     /// The item with positions on the floor, which VLN-CE needs. The floor lies `eye_height_m` below the eyes of the
-    /// path's frames (a camera's height over the floor: about 1.5 m in Matterport3D). A path whose motion is unknown
-    /// has none.
+    /// path's frames (a camera's height over the floor: about 1.5 m in Matterport3D). A path with unknown motion has
+    /// none.
     #[must_use]
     pub fn on_floor_of(mut self, path: &Path, eye_height_m: f64) -> Self {
         let frames = path.frames.iter().filter(|_| path.motion.is_known());

@@ -1,4 +1,4 @@
-//! Why a file is refused: which file, which item, which field, and what to do.
+//! The errors for refused files: they name the file, the item and the field, and give advice.
 
 use std::{
     fmt,
@@ -13,19 +13,19 @@ pub enum FormatError {
     Io {
         /// Which file.
         file: PathBuf,
-        /// What was tried ("open", "write").
+        /// The operation ("open", "write").
         doing: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// The file as a whole is not what it should be.
+    /// The file as a whole does not have the form that it should have.
     #[error("{}: {problem}; {hint}", file.display())]
     Document {
         /// Which file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// The problem, in words.
         problem: String,
-        /// What to do.
+        /// Advice for the user.
         hint: &'static str,
     },
     /// One of its items is wrong.
@@ -45,13 +45,13 @@ pub struct WrongItem {
     pub id: Option<String>,
     /// The field, with the index or key within it (`path[3]`).
     pub field: String,
-    /// What is wrong with it.
+    /// The problem, in words.
     pub problem: String,
-    /// What to do.
+    /// Advice for the user.
     pub hint: &'static str,
 }
 
-/// Where an item stands in its file.
+/// The place of an item in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ItemPlace {
     /// Its index in a JSON list, from 0.
@@ -69,7 +69,7 @@ impl fmt::Display for ItemPlace {
     }
 }
 
-/// What to do about an error of the system, after a semicolon; empty where its message is enough.
+/// Advice about an error of the system, after a semicolon; empty where its message is enough.
 fn advice(error: &std::io::Error) -> &'static str {
     if error.kind() == std::io::ErrorKind::NotFound { "; check the spelling of the path" } else { "" }
 }

@@ -1,4 +1,4 @@
-//! The formats, and how a file's format is recognised.
+//! The dataset formats, and how the format of a file is recognised.
 
 use crate::{Episode, FormatError, input, jsonl, r2r, reverie, rxr, strict::Strict, vlnce};
 use serde::de::{Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
@@ -90,7 +90,7 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 pub fn detect(file: &Path) -> Result<Format, FormatError> {
     let mut parser = input::parser(file)?;
     let told = RefCell::new(None);
-    // Stopping early is an error as well, so only what was found before it counts.
+    // Stopping early is an error as well, so only the format that was found before it counts.
     let read = (&mut parser).deserialize_any(Beginning(&told));
     let format = told.take();
     format.ok_or_else(|| {

@@ -1,4 +1,4 @@
-//! Habitat's frame: y up, and an agent that has not turned looks along -z.
+//! Converts poses between the world frame and Habitat's: y up, and an agent that has not turned looks along -z.
 //!
 //! Habitat's Matterport3D scenes are Matterport's own with other axes: habitat (x, y, z) = Matterport (x, z, -y).
 
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_rotation_or_has_no_heading_is_refused() {
+    fn heading_from_habitat_refuses_what_is_no_level_rotation() {
         assert_eq!(heading_from_habitat([0.0; 4]), None);
         assert_eq!(heading_from_habitat([f64::NAN, 0.0, 0.0, 1.0]), None);
         assert_eq!(heading_from_habitat([FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2]), None);

@@ -1,17 +1,18 @@
-//! HEAR's annotations: texts about paths, with spans that people called right or wrong.
+//! Reads HEAR's annotations: texts about paths, with spans that people called right or wrong.
 //!
-//! The file is one JSON object of items by name. Fields: those of R2R's path (`scan`, `path`, `heading`), `original_instr`
-//! (the text), `numbered_instruction` (its tokens, each followed by its number from 0: `turn (0) left (1) . (2)`) and
-//! `id2label`, from token numbers to a label. A key is one number, or numbers that ascend: "5-8" means tokens 5 to 8.
-//! Labels are 1 (right), 0 and -1 (wrong). `id2gold_alternative`, which may be missing, has under the same keys what people would
-//! say instead: words, several of them between slashes, or `REMOVE`. Other fields are not read.
+//! The file is one JSON object of items by name. Fields: those of R2R's path (`scan`, `path`, `heading`),
+//! `original_instr` (the text), `numbered_instruction` (its tokens, each followed by its number from 0: `turn (0) left
+//! (1) . (2)`) and `id2label`, from token numbers to a label. A key is one number, or numbers that ascend: "5-8" means
+//! tokens 5 to 8. Labels are 1 (right), 0 and -1 (wrong). `id2gold_alternative`, which may be missing, gives for the
+//! same keys the words that people would use instead, several of them between slashes, or `REMOVE`. Other fields are
+//! not read.
 
 use crate::{Episode, FormatError, Item, ItemPlace, input, strict::Strict};
 use serde::de::DeserializeSeed;
 use serde_json::{Map, Value};
 use std::{cell::RefCell, path::Path};
 
-/// A text with what people said of its parts.
+/// A text with the labels that people gave to its spans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabelledText {
     /// Its name in the file.
@@ -33,14 +34,15 @@ pub struct LabelledSpan {
     pub span: [usize; 2],
     /// Whether people called it right.
     pub is_right: bool,
-    /// What people would say instead; `None` where they would leave the words out.
+    /// The words that people would use instead; `None` where they would leave the words out.
     pub corrections: Vec<Option<String>>,
 }
 
 /// Reads a file of HEAR, plain or gzip.
 ///
 /// # Errors
-/// When the file cannot be read, is not such an object, holds no text, or an item is refused: a field is missing or
+/// When the file cannot be read, is not a JSON object of items, contains no text, or an item is refused: a field is
+/// missing or
 /// wrong, the tokens are not those of the text, a key names no tokens, or a label is none of 1, 0 and -1. The error names
 /// the text and the key.
 pub fn read(file: &Path) -> Result<Vec<LabelledText>, FormatError> {
@@ -122,7 +124,7 @@ fn tokens(item: &mut Item<'_>, text: &str) -> Result<Vec<[usize; 2]>, FormatErro
     Ok(tokens)
 }
 
-/// What people would say instead, by keys.
+/// The corrections by keys.
 fn corrections(item: &mut Item<'_>) -> Result<Map<String, Value>, FormatError> {
     const FIELD: &str = "id2gold_alternative";
     match item.take_optional(FIELD) {
@@ -132,7 +134,7 @@ fn corrections(item: &mut Item<'_>) -> Result<Map<String, Value>, FormatError> {
     }
 }
 
-/// The words of a correction, which are between slashes.
+/// The alternatives of one correction, which are separated by slashes.
 fn told_instead(item: &Item<'_>, key: &str, told: &Value) -> Result<Vec<Option<String>>, FormatError> {
     let Value::String(told) = told else {
         let field = format!("id2gold_alternative.{key:.40}");

@@ -1,4 +1,5 @@
-//! Reads files item by item, with bounds, and unzips gzip.
+//! Opens dataset files and reads them item by item. The files are untrusted: sizes and counts are bounded, and gzip is
+//! unpacked under the same bounds.
 
 use crate::{FormatError, Item, ItemPlace, WrongItem, limits, strict::Strict, tokens::Tokens};
 use flate2::bufread::MultiGzDecoder;
@@ -270,10 +271,10 @@ impl<'de> Visitor<'de> for &Items<'_> {
     }
 }
 
-/// A JSON object whose values are items.
+/// A JSON object with an item as the value of each name.
 struct Entries<'i, 'a> {
     items: &'i Items<'a>,
-    /// The name of the item that is read.
+    /// The name of the item that is being read.
     name: &'i RefCell<String>,
 }
 

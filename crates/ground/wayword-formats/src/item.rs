@@ -1,4 +1,4 @@
-//! One item of a file, and its fields with their types checked.
+//! One item of a file. Its methods take fields and check their types, and an error names file, item and field.
 
 use crate::{FormatError, ItemPlace, WrongItem, limits};
 use serde::de::DeserializeOwned;

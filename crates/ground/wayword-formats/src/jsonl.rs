@@ -1,8 +1,8 @@
 //! Wayword's own format for paths of any platform: JSON Lines, one instruction each.
 //!
 //! A line has `format` ("wayword/1"), `platform`, `split`, `path` (a core path with its frames) and the fields of a
-//! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`, and `ambiguity` where it is known. `path_id` names the path in its
-//! dataset, where several items may share it. Unknown fields are kept.
+//! core instruction: `text`, `style`, `mentions`, `verdict`, `findings`, `provenance`, and `ambiguity` where it is
+//! known. `path_id` names the path in its dataset, where several items may share it. Unknown fields are kept.
 
 use crate::{Episode, FormatError, Item, input, item, limits, output, tally::Tally};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -15,7 +15,7 @@ use wayword_core::{Instruction, Path, SceneId};
 
 /// The value of `format`.
 const FORMAT: &str = "wayword/1";
-/// The field that says which path of a dataset an item lies on.
+/// The field with the name of the dataset's path that an item lies on.
 const PATH_ID: &str = "path_id";
 
 /// One instruction for one path.

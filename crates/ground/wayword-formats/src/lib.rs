@@ -4,7 +4,7 @@
 //! Files are untrusted. Sizes and counts are bounded, ids cannot name a folder, and an error names file, item and
 //! field. A file is written completely or not at all.
 //!
-//! Architecture invariant: nothing here depends on a platform, a model or a network.
+//! Architecture invariant: this crate depends on no platform, model or network.
 
 mod episode;
 mod error;

@@ -1,4 +1,4 @@
-//! Limits on untrusted files.
+//! Limits on untrusted files, in one place. They are far above those of the field's datasets.
 
 /// Largest file, in bytes, both on the disk and after gunzip.
 pub(crate) const FILE_BYTES: u64 = 1 << 30;

@@ -54,11 +54,11 @@ pub(crate) fn add_extra(fields: &mut Map<String, Value>, episode: &Episode) {
     }
 }
 
-/// The field in which an item keeps the name of a path that had to be numbered.
+/// The field that keeps the name of a path that had to be numbered.
 pub(crate) const PATH_NAME: &str = "path_name";
 
-/// The numbers of a file's paths. The field's evaluators read a path's name back with `int()`. So a path whose name is
-/// not a number (`house2-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
+/// The numbers of a file's paths. The field's evaluators read a path's name back with `int()`. So a path with another
+/// name (`house2-3-17`) gets a number that no other path of the file has, and keeps its name in `path_name`.
 pub(crate) struct PathNumbers {
     numbers: Numbers,
     given: BTreeMap<String, u64>,
@@ -112,7 +112,7 @@ impl Numbers {
     }
 }
 
-/// The number that a name is.
+/// A name's number, where the name is one.
 pub(crate) fn number_of(name: &str) -> Option<u64> {
     item::value_of(name).as_u64()
 }

@@ -1,4 +1,4 @@
-//! Writes files, completely or not at all.
+//! Writes files completely or not at all.
 
 use crate::FormatError;
 use flate2::{Compression, write::GzEncoder};
@@ -10,8 +10,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes a file beside its place and then moves it there, so that a reader never sees half of it. The file is gzip
-/// where its name ends in `.gz`.
+/// Writes a temporary file next to the final one and then renames it, so that a reader never sees half of it. The file
+/// is gzip where its name ends in `.gz`.
 pub(crate) fn write_file(file: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FormatError> {
     let beside = beside(file)?;
     let written = write_to(&beside, file.extension().is_some_and(|ending| ending == "gz"), fill)
@@ -65,8 +65,8 @@ pub(crate) fn write_lines<T: Serialize>(out: &mut dyn Write, items: impl IntoIte
     Ok(())
 }
 
-/// Writes `<name>.provenance.jsonl` beside a dataset, with what its format has no room for: one JSON object per line.
-/// Returns the file's name.
+/// Writes `<name>.provenance.jsonl` next to a dataset, for facts that its format has no field for: one JSON object per
+/// line. Returns the file's name.
 ///
 /// # Errors
 /// When the file cannot be written.

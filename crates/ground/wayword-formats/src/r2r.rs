@@ -29,8 +29,8 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 ///
 /// R2R has one item per path, because its loaders name an instruction by its path and its place in the item. So items
 /// on one path with the same heading (REVERIE's, for several objects) become one item with all their instructions.
-/// Where the heading differs, the later item gets its own path number. A path whose name is not a number gets one, and
-/// keeps its name in `path_name`.
+/// Where the heading differs, the later item gets its own path number. A path with a name that is not a number gets
+/// one, and keeps its name in `path_name`.
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.

@@ -33,8 +33,8 @@ pub fn read(file: &Path) -> Result<Vec<Episode>, FormatError> {
 
 /// Writes a REVERIE file (2022 release; fields of the first release are kept where an item has them).
 ///
-/// An item's id is "path_objId", or "path" where it has no target. A path whose name is not a number gets one, and
-/// keeps its name in `path_name`.
+/// An item's id is "path_objId", or "path" where it has no target. A path with a name that is not a number gets one,
+/// and keeps its name in `path_name`.
 ///
 /// # Errors
 /// When a path names no viewpoints, two items would have the same id, or the file cannot be written.

@@ -8,10 +8,10 @@ use matterport::{Numbers, PathNumbers, number_of};
 use serde_json::{Map, Value, json};
 use std::{collections::BTreeSet, path::Path};
 
-/// Known fields that are kept as long as the text is the one that was read.
+/// Fields that describe the text: they are written back only while the text is unchanged.
 const OF_THE_TEXT: [&str; 4] = ["annotator_id", "language", "timed_instruction", "edit_distance"];
 
-/// The field with the ids of the instruction's tokens, for agents whose loaders ask for them.
+/// The field with the ids of the instruction's tokens, for agents that load them.
 const ENCODING: &str = "instr_encoding";
 
 /// Reads a file of guide annotations.
@@ -68,10 +68,10 @@ fn timed_words(item: &Item<'_>, field: &str, value: &Value) -> Result<(), Format
 
 /// Writes guide annotations, one line per instruction; gzip where the name ends in `.gz`.
 ///
-/// A text that is not the one that was read gets `language` "en-US", the `annotator_id` 0 (no annotator wrote it), an
-/// `edit_distance` of 0 (nothing was transcribed) and words without times, like some of RxR's own words. Instructions
-/// get new numbers where an item has several, or where its id is not a number or is used already. A path whose name is
-/// not a number gets one, and keeps its name in `path_name`. An item without a split gets "train".
+/// A text that differs from the one that was read gets `language` "en-US", the `annotator_id` 0 (no annotator wrote
+/// it), an `edit_distance` of 0 (it is no transcription) and words without times, like some of RxR's own words.
+/// Instructions get new numbers where an item has several, or where its id is not a number or is used already. A path
+/// with a name that is not a number gets one, and keeps its name in `path_name`. An item without a split gets "train".
 ///
 /// # Errors
 /// When a path names no viewpoints, or the file cannot be written.

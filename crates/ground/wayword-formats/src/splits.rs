@@ -1,4 +1,5 @@
-//! The split of scenes into those for training and those for evaluation.
+//! Splits scenes into those for training and those for evaluation. A split by scene, and not by path, keeps a model
+//! from being evaluated in rooms that it was trained in.
 
 use crate::{
     OfficialSplit,

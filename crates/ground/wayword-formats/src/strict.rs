@@ -1,5 +1,5 @@
 //! JSON as `serde_json` reads it, with three differences: a key that is given twice is refused, the size of a value is
-//! bounded, and an error says at which field of the value it happened.
+//! bounded, and an error names the field of the value at which it happened.
 
 use crate::limits;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -10,8 +10,8 @@ use std::{
     fmt::{self, Write as _},
 };
 
-/// Reads one value. Where that fails, the text becomes the field at which it failed, such as `path[3]`; it stays empty
-/// at the root.
+/// Reads one value. If that fails, the text becomes the field at which it failed, for example `path[3]`; it stays
+/// empty at the root.
 #[derive(Clone, Copy)]
 pub(crate) struct Strict<'f>(pub(crate) &'f RefCell<String>);
 

@@ -1,10 +1,11 @@
-//! Counts what was read of a file so far: names that may be given only once, and the values that are kept in memory.
+//! Watches over a file while it is read: names that may be given only once, and the number of values that are kept in
+//! memory.
 
 use crate::{Episode, FormatError, Item, limits};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
-/// What was read of a file so far.
+/// The names and the number of values of a file so far.
 #[derive(Default)]
 pub(crate) struct Tally {
     names: BTreeSet<String>,
@@ -68,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_of_a_file_has_a_limit() {
+    fn take_rest_limits_the_values_in_memory() {
         let mut tally = Tally::default();
         let item = || Item::new(Path::new("big.json"), ItemPlace::Item(0), json!({"a": [0, 0]})).unwrap();
         assert_eq!(tally.rest(item(), limits::VALUES_KEPT - 3).unwrap().len(), 1);

@@ -1,5 +1,5 @@
-//! JSON whose texts and numbers are bounded while it is read, because `serde_json` takes up to three times the memory
-//! of a text before it returns it.
+//! A reader that bounds the texts and numbers of JSON while it is read. Without it, `serde_json` would take up to
+//! three times the memory of a long text before returning it.
 
 use crate::limits;
 use std::io::{self, Read};

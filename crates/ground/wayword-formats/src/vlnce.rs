@@ -191,7 +191,7 @@ fn take_instruction(
 /// An episode's name is its item's id, or `ID_0`, `ID_1`, ... where the item has several instructions. Where the path
 /// is not the one that was read, its goal is its last position (radius 3 m), and `info.geodesic_distance` is the
 /// distance over the scene's navmesh where the item has it, else the length of the path; `info.geodesic_distance_over`
-/// says which. What does not fit into the format belongs in a sidecar ([`crate::write_sidecar`]).
+/// names which. Facts that do not fit into the format belong in a sidecar ([`crate::write_sidecar`]).
 ///
 /// # Errors
 /// When an item has no floor positions, two episodes would have the same id, or the file cannot be written.

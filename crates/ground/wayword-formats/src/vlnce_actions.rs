@@ -16,7 +16,7 @@ const ACTIONS: usize = 25_000;
 /// Most actions of all episodes together that are kept in memory.
 const ACTIONS_KEPT: usize = 20_000_000;
 
-/// What an agent does in an episode.
+/// The actions of an agent in an episode, and the places that they lead to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Acted {
     /// Its actions; the last is [`Action::Stop`].
@@ -26,7 +26,7 @@ pub struct Acted {
 }
 
 impl Acted {
-    /// From where the agent is before each action.
+    /// The actions of an episode, from the agent's position before each of them.
     #[must_use]
     pub fn of(actions: &[Action], positions: &[DVec3]) -> Self {
         let after_steps = actions.iter().zip(positions.iter().skip(1));
@@ -36,7 +36,7 @@ impl Acted {
     }
 }
 
-/// Writes what agents do, by episode; gzip where the name ends in `.gz`.
+/// Writes the actions of each episode; gzip where the name ends in `.gz`.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -56,7 +56,7 @@ pub fn write(file: &Path, acted: &BTreeMap<String, Acted>) -> Result<(), FormatE
     })
 }
 
-/// Reads what agents do, by episode; plain or gzip.
+/// Reads the actions of each episode; plain or gzip.
 ///
 /// # Errors
 /// When the file cannot be read, or an episode breaks a rule; the error names it and the field.
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_breaks_a_rule_is_named() {
+    fn read_names_the_episode_and_field_that_break_a_rule() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("gt.json");
         for (text, told) in [

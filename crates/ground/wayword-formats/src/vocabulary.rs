@@ -1,4 +1,4 @@
-//! Words as numbers for VLN-CE's agents.
+//! Turns words into the numbers that VLN-CE's agents read.
 
 use std::collections::BTreeMap;
 
@@ -43,8 +43,8 @@ impl Vocabulary {
     }
 
     /// A text's 200 tokens, in lower case. A token is a word of letters and digits (with inner `'` and `-`), or a
-    /// punctuation mark other than commas and question marks, which are left out. What comes after the 200th token is
-    /// cut. A text whose tokens were read with this vocabulary keeps them.
+    /// punctuation mark other than commas and question marks, which are left out. Everything after the 200th token is
+    /// cut. A text keeps the tokens that were read with this vocabulary.
     #[must_use]
     pub fn tokens(&self, text: &str) -> Vec<u64> {
         if let Some(tokens) = self.tokens_as_read.get(text) {

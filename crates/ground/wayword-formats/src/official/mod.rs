@@ -1,16 +1,17 @@
-//! The official splits of Matterport3D and HM3D, which are by scene: who trains on a scene of val or test measures nothing there.
+//! The official splits of Matterport3D and HM3D. They are by scene: results on val or test are worthless if a model
+//! was trained on their scenes.
 
 use wayword_core::SceneId;
 
 /// Matterport3D's scenes, one a line: the split, and the scene.
 const MATTERPORT3D: &str = include_str!("matterport3d.txt");
-/// Names of splits that are held out for validation; for Matterport3D the field says val_unseen.
+/// Names of splits that are held out for validation; for Matterport3D the field's name is val_unseen.
 const VALIDATION: [&str; 4] = ["val_unseen", "val", "validation", "minival"];
 
 /// An official split of scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum OfficialSplit {
-    /// For training, and for `val_seen`, whose paths lie in the scenes of training.
+    /// For training, and for `val_seen`, which has paths in the scenes of training.
     Train,
     /// Matterport3D's scenes for validation.
     ValUnseen,
@@ -39,7 +40,7 @@ impl OfficialSplit {
         }
     }
 
-    /// Whether nothing may be trained on its scenes.
+    /// Whether its scenes must not be used for training.
     #[must_use]
     pub fn is_held_out(self) -> bool {
         self != Self::Train
@@ -104,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn hm3d_goes_by_its_numbers() {
+    fn hm3d_splits_go_by_scene_numbers() {
         assert_eq!(of("00000-kfPV7w3FaU5"), Some(OfficialSplit::Train));
         assert_eq!(of("00799-kfPV7w3FaU5"), Some(OfficialSplit::Train));
         assert_eq!(of("00800-TEEsavR23oF"), Some(OfficialSplit::Val));

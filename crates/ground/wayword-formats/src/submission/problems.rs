@@ -1,4 +1,4 @@
-//! All problems of a submission, and not only the first.
+//! Collects all problems of a submission, so that a user can repair them in one go.
 
 use crate::{FormatError, limits};
 
@@ -26,7 +26,7 @@ impl Problems {
         }
     }
 
-    /// The value, where there is one; else the problem is kept.
+    /// The value of a success; a failure is added to the problems.
     pub(super) fn good<T>(&mut self, found: Result<T, FormatError>) -> Option<T> {
         found.map_err(|problem| self.add(problem)).ok()
     }

@@ -9,7 +9,7 @@ use wayword_core::{Heading, ViewpointId};
 /// An item's name is its episode's, followed by the place of the instruction.
 const INSTR_ID_BYTES: usize = limits::NAME_BYTES + 21;
 
-/// What could be read of a submission, and its problems.
+/// The usable items of a submission, and the problems of the others.
 #[derive(Debug)]
 pub struct Reading {
     /// The items without a problem, in the order of the file.
@@ -39,7 +39,7 @@ pub fn read(file: &Path) -> Reading {
     Reading { submitted: reader.submitted, flawed: reader.flawed, problems: reader.problems, is_whole }
 }
 
-/// What a file has given so far.
+/// The items and problems of a file so far.
 #[derive(Default)]
 struct Reader {
     submitted: Vec<Submitted>,

@@ -1,4 +1,4 @@
-//! What the columns hold, in the order of the schema.
+//! Fills the columns of the table, in the order of the schema.
 
 use super::{
     Row,
@@ -89,7 +89,7 @@ impl<W: Write + Send> Columns<'_, '_, W> {
         self.words(rows, |row| &row.record.instruction.provenance.writer)?;
         self.words_or_null(rows, |row| row.record.instruction.provenance.finished_for.as_deref())?;
         self.words(rows, |row| &row.record.instruction.provenance.checked_against)?;
-        // The schema says that the bits are those of a number without a sign.
+        // In the schema, the bits are those of an unsigned number.
         self.put::<Int64Type>(&required(rows, |row| row.record.instruction.provenance.seed.cast_signed()))?;
         self.put::<Int64Type>(&required(rows, |row| i64::from(row.record.instruction.provenance.repairs)))?;
         self.words(rows, |row| &row.record.instruction.provenance.style_hash)?;
@@ -109,7 +109,7 @@ impl<W: Write + Send> Columns<'_, '_, W> {
     }
 }
 
-/// The nodes of the viewpoint graph; `None` where a frame is none, or is only a picture's name.
+/// The nodes of the viewpoint graph; `None` if a frame is not a node, or the names are those of pictures.
 fn viewpoints(row: &Row<'_>) -> Option<Vec<ByteArray>> {
     let frames = row.record.path.frames.iter().filter(|_| row.record.path.motion.is_known());
     let names = frames.map(|frame| frame.viewpoint.as_ref().map(|viewpoint| ByteArray::from(viewpoint.as_str())));

@@ -1,7 +1,7 @@
 //! Records as a table: a Parquet file with a row for each instruction, and flat, typed columns.
 //!
-//! `columns.rs` says what the columns hold and `schema.txt` of which type they are, in the same order; `shred.rs` makes Parquet's
-//! levels of rows.
+//! `columns.rs` fills the columns and `schema.txt` gives their types, in the same order; `shred.rs` computes Parquet's
+//! levels for the rows.
 
 mod columns;
 mod shred;

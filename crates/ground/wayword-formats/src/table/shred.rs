@@ -1,5 +1,6 @@
-//! Parquet's levels. A leaf of the schema is written as its values, with two numbers for each: how much of what is optional or
-//! repeated above it is there (`def`), and at which list a value goes on rather than begins (`rep`).
+//! Turns rows into Parquet's leaf columns. A leaf of the schema is written as its values, with two numbers for each:
+//! how many of the optional or repeated fields above it are present (`def`), and at which list a value continues
+//! rather than begins (`rep`). This is the record shredding of Dremel.
 
 use super::Row;
 

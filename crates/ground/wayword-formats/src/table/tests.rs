@@ -1,3 +1,5 @@
+//! Tests of the Parquet table: what is written is read back by the `parquet` crate.
+
 use super::*;
 use crate::jsonl;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -40,7 +42,7 @@ fn table_of(records: &[Record]) -> Vec<Value> {
 }
 
 #[test]
-fn a_row_holds_what_its_record_says() {
+fn a_row_has_the_values_of_its_record() {
     let rows = table_of(&records(&[record(0), record(1)]));
     assert_eq!(rows.len(), 2);
     let row = &rows[1];
@@ -73,7 +75,7 @@ fn a_row_holds_what_its_record_says() {
 }
 
 #[test]
-fn what_is_not_known_is_null_and_what_is_empty_is_empty() {
+fn unknown_cells_are_null_and_empty_lists_stay_empty() {
     let mut blind = record(0);
     blind["path"]["motion"] = json!("unknown");
     blind["path"].as_object_mut().unwrap().remove("target");

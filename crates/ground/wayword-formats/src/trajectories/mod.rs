@@ -1,5 +1,5 @@
-//! Trajectories for training: the actions along a walk, where the agent is before each, what it sees there, and the
-//! instructions about it.
+//! Trajectories for training policies: the actions along a walk, the agent's pose before each, the picture it sees
+//! there, and the instructions about it.
 //!
 //! A folder has `trajectories.jsonl`, one line per walk, and the pictures: in a folder for each walk
 //! (`images/ID/0000.jpg`), or in shards as WebDataset reads them (`shards/000000.tar`, one sample per walk:
@@ -40,9 +40,9 @@ pub struct Trajectory {
     pub scene: SceneId,
     /// The split.
     pub split: String,
-    /// What the agent does. The last action, and no other, is [`Action::Stop`].
+    /// The agent's actions. The last action, and no other, is [`Action::Stop`].
     pub actions: Vec<Action>,
-    /// Where it stands before each action, on the floor, world frame, metres.
+    /// Where the agent is before each action, on the floor, world frame, metres.
     pub positions: Vec<DVec3>,
     /// Which way it looks before each action.
     pub headings: Vec<Heading>,
@@ -76,7 +76,7 @@ pub enum Place {
 /// An instruction about a walk.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Told {
-    /// Its episode in the VLN-CE file beside the trajectories.
+    /// Its episode in the VLN-CE file next to the trajectories.
     pub episode_id: String,
     /// Its style.
     pub style: String,

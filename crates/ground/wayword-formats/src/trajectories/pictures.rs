@@ -1,4 +1,4 @@
-//! The pictures of walks.
+//! Reads the pictures of walks from folders or shards, and checks their hash.
 
 use super::{Place, Trajectory};
 use crate::FormatError;

@@ -167,7 +167,7 @@ fn take_instructions(item: &mut Item<'_>, frame_steps: &[usize]) -> Result<Vec<T
     Ok(all)
 }
 
-/// The field of a part that is wrong, and how.
+/// The first field of a part that is wrong, and the problem.
 fn fault(sub: &SubInstruction, text: &str, frame_steps: &[usize]) -> Option<(&'static str, &'static str)> {
     let ([from, to], [first, last]) = (sub.span, sub.frames);
     if text.get(from..to) != Some(sub.text.as_str()) {

@@ -1,3 +1,5 @@
+//! Tests of writing and reading trajectories with their pictures.
+
 use super::*;
 use proptest::prelude::*;
 
@@ -36,7 +38,7 @@ fn folder_of(id: &str) -> Trajectory {
 }
 
 #[test]
-fn what_is_written_is_read_with_its_pictures() {
+fn trajectories_come_back_with_their_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let apart = folder_of("a");
     let key = "000001".to_owned();
@@ -85,7 +87,7 @@ fn a_shard_is_the_same_bytes_each_time() {
 }
 
 #[test]
-fn what_breaks_a_rule_is_refused_with_line_and_field() {
+fn read_refuses_broken_rules_with_line_and_field() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trajectories.jsonl");
     for (field, value, told) in [

@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -39,7 +37,7 @@ fn unknown() -> impl Strategy<Value = Vec<(String, Value)>> {
     prop::collection::vec(("x_\\PC{0,8}", any_json()), 0..5)
 }
 
-/// Changes to an item that keep it valid: other values of the fields that every such item has.
+/// Changes to an item that keep it valid: other values of the fields that every item of this kind has.
 #[derive(Debug, Clone)]
 struct Change {
     scene: String,
@@ -91,17 +89,17 @@ fn unknown_keys(item: &Value) -> Vec<&String> {
 fn comes_back(format: Format, ending: &str, changes: &[Change]) {
     let items: Vec<_> = changes
         .iter()
-        .zip(common::items(format))
+        .zip(crate::common::items(format))
         .enumerate()
         .map(|(n, (change, item))| changed(format, n, &item, change))
         .collect();
     let folder = tempfile::tempdir().unwrap();
     let (file, copy) = (folder.path().join("file"), folder.path().join(format!("copy{ending}")));
-    std::fs::write(&file, common::text(format, &items)).unwrap();
-    common::copy(format, &file, &copy).unwrap();
+    std::fs::write(&file, crate::common::text(format, &items)).unwrap();
+    crate::common::copy(format, &file, &copy).unwrap();
     assert_eq!(read(&copy).unwrap(), read(&file).unwrap());
     if !ending.ends_with(".gz") {
-        let back = common::items_of(format, &copy);
+        let back = crate::common::items_of(format, &copy);
         assert_eq!(back, items);
         for (back, item) in back.iter().zip(&items) {
             assert_eq!(unknown_keys(back), unknown_keys(item), "unknown fields changed their order");
@@ -157,15 +155,15 @@ proptest! {
 fn copied(format: Format, item: Value) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let (file, copy) = (folder.path().join("file"), folder.path().join("copy"));
-    std::fs::write(&file, common::text(format, &[item])).unwrap();
+    std::fs::write(&file, crate::common::text(format, &[item])).unwrap();
     assert_eq!(wayword_formats::detect(&file).unwrap(), format);
-    common::copy(format, &file, &copy).unwrap();
-    common::items_of(format, &copy).remove(0)
+    crate::common::copy(format, &file, &copy).unwrap();
+    crate::common::items_of(format, &copy).remove(0)
 }
 
 #[test]
 fn reveries_first_release_comes_back_too() {
-    let mut item = common::items(Format::Reverie).remove(0);
+    let mut item = crate::common::items(Format::Reverie).remove(0);
     item["distance"] = json!(11.25);
     item["ix"] = json!(3);
     item["instructions_l"] = json!(["Leave the hall.", "Walk on.", "Stop."]);
@@ -174,15 +172,15 @@ fn reveries_first_release_comes_back_too() {
 
 #[test]
 fn an_item_without_an_object_is_reverie_by_its_id() {
-    let mut item = common::items(Format::Reverie).remove(0);
+    let mut item = crate::common::items(Format::Reverie).remove(0);
     item.as_object_mut().unwrap().shift_remove("objId");
     item["id"] = json!("0_free");
     assert_eq!(copied(Format::Reverie, item.clone()), item);
 }
 
 #[test]
-fn vlnce_drops_what_its_loader_would_crash_on() {
-    let item = common::items(Format::Vlnce).remove(0);
+fn vlnce_drops_fields_that_crash_its_loader() {
+    let item = crate::common::items(Format::Vlnce).remove(0);
     let mut strange = item.clone();
     strange["style"] = json!("r2r");
     strange["instruction"]["language"] = json!("en-US");
@@ -191,7 +189,7 @@ fn vlnce_drops_what_its_loader_would_crash_on() {
 
 #[test]
 fn a_vlnce_episode_of_a_test_split_has_neither_goal_nor_path() {
-    let mut item = common::items(Format::Vlnce).remove(0);
+    let mut item = crate::common::items(Format::Vlnce).remove(0);
     item["goals"] = Value::Null;
     item["reference_path"] = Value::Null;
     item["info"] = Value::Null;

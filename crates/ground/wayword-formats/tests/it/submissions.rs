@@ -1,4 +1,4 @@
-//! Submissions: what is written can be read again, and the reader reports all problems.
+//! Submissions: a written one can be read again, and the reader reports all problems.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -71,7 +71,7 @@ fn directions_may_be_absent_and_places_may_come_together() {
 }
 
 #[test]
-fn gzip_is_told_by_its_bytes() {
+fn gzip_is_recognised_by_its_bytes() {
     let mut zipped = GzEncoder::new(Vec::new(), Compression::fast());
     zipped.write_all(br#"[{"instr_id": "1_0", "trajectory": [["hall", 0, 0]]}]"#).unwrap();
     let found = in_file(zipped.finish().unwrap(), whole);
@@ -79,7 +79,7 @@ fn gzip_is_told_by_its_bytes() {
 }
 
 #[test]
-fn all_problems_are_told() {
+fn read_lists_all_problems() {
     let found = problems(
         json!([
             {"instr_id": "1_0", "trajectory": [["hall", 0, 0]]},
@@ -112,7 +112,7 @@ fn all_problems_are_told() {
 }
 
 #[test]
-fn what_could_be_read_stands_beside_what_is_wrong() {
+fn read_returns_usable_items_together_with_problems() {
     let items = json!([
         {"instr_id": "1_0", "trajectory": ["hall", 5, "door"]},
         {"instr_id": "1_1", "trajectory": ["hall"]},
@@ -131,14 +131,14 @@ fn what_could_be_read_stands_beside_what_is_wrong() {
 }
 
 #[test]
-fn what_was_wrong_before_the_file_broke_off_is_told_too() {
+fn read_lists_problems_before_the_file_broke_off() {
     let found = problems(r#"[{"instr_id": "1_0"}, {"instr_id": "1_1", "trajectory": [["hall", 0"#);
     assert_eq!(found.len(), 2, "{found:?}");
     assert!(found[1].contains("EOF while parsing"), "{found:?}");
 }
 
 #[test]
-fn a_thousand_problems_are_told_and_the_others_counted() {
+fn read_lists_a_thousand_problems_and_counts_the_rest() {
     let items: Vec<Value> = (0..1_500).map(|n| json!({"instr_id": format!("{n}_0")})).collect();
     let problems = in_file(Value::from(items).to_string(), read).problems;
     assert_eq!((problems.told.len(), problems.untold, problems.count()), (1_000, 500, 1_500));
@@ -186,7 +186,7 @@ fn submitted() -> impl Strategy<Value = Submitted> {
 
 proptest! {
     #[test]
-    fn what_is_written_comes_back(mut all in prop::collection::vec(submitted(), 0..6), ending in "|[.]gz") {
+    fn submissions_come_back_as_written(mut all in prop::collection::vec(submitted(), 0..6), ending in "|[.]gz") {
         for (n, submitted) in all.iter_mut().enumerate() {
             submitted.instr_id = format!("{n}_0");
         }

@@ -1,4 +1,4 @@
-//! HEAR's annotations: which words a key names, and what is refused.
+//! HEAR's annotations: which words a key names, and which files are refused.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking, and says what it skipped")]
 
@@ -57,7 +57,7 @@ fn a_key_names_the_words_from_its_first_token_to_its_last() {
 }
 
 #[test]
-fn corrections_are_words_between_slashes_or_to_leave_out() {
+fn corrections_are_words_between_slashes_or_remove() {
     let corrections = |told: Value| {
         let mut file = file();
         file["7_0"]["id2gold_alternative"] = told;
@@ -91,7 +91,7 @@ fn tokens_that_are_not_those_of_the_text_are_refused() {
 }
 
 #[test]
-fn a_key_or_a_label_that_means_nothing_is_refused_with_the_text_s_and_the_key_s_name() {
+fn read_refuses_unusable_keys_and_labels_by_name() {
     for (key, label, problem) in [
         ("9", json!(1), "it names token 9, but the text has 9"),
         ("5-99999999999", json!(1), "it names token 99999999999, but the text has 9"),
@@ -124,7 +124,7 @@ fn fields_that_break_a_limit_are_refused() {
 }
 
 #[test]
-fn a_file_that_is_no_such_object_is_refused() {
+fn read_refuses_a_file_that_is_not_an_object_of_items() {
     for (text, problem) in [
         ("{}", "it holds no text"),
         ("[]", "it is not a JSON object"),

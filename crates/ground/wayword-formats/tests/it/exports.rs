@@ -40,7 +40,7 @@ fn episode(id: &str, object: Option<&str>, texts: &[&str]) -> Episode {
     Episode::from_path(&path, texts.iter().map(|text| (*text).to_owned()).collect()).on_floor_of(&path, EYE_HEIGHT_M)
 }
 
-/// A path whose name is a number, as in Matterport3D, and two with other names, as in a house; four instructions
+/// A path with a number as its name, as in Matterport3D, and two with other names, as in a house; four instructions
 /// together.
 fn episodes() -> Vec<Episode> {
     let mut plain = episode("0", Some("66"), &["Turn left and walk to the plant.", "Go on, then stop by the plant."]);
@@ -88,7 +88,7 @@ fn the_fields_own_loaders_read_what_is_written() {
 }
 
 #[test]
-fn a_loader_that_meets_an_unknown_key_of_an_episode_would_crash_so_the_check_does_too() {
+fn the_loader_check_crashes_on_an_unknown_key() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("d.json");
     write(Format::Vlnce, &file, &episodes());
@@ -103,7 +103,7 @@ fn a_loader_that_meets_an_unknown_key_of_an_episode_would_crash_so_the_check_doe
 }
 
 #[test]
-fn every_export_is_told_by_its_content_and_read_again() {
+fn detect_recognises_every_export_by_its_content() {
     let folder = tempfile::tempdir().unwrap();
     for format in [Format::R2r, Format::Reverie, Format::Rxr, Format::Vlnce] {
         let file = folder.path().join("export");
@@ -148,7 +148,7 @@ fn reverie_refuses_two_items_of_one_id() {
 }
 
 #[test]
-fn a_text_that_was_replaced_is_not_an_annotators() {
+fn rxr_drops_the_annotators_fields_of_a_replaced_text() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("guide.jsonl");
     let line = json!({"split": "val_seen", "instruction_id": 4, "annotator_id": 31, "language": "hi-IN", "path_id": 9,
@@ -168,7 +168,7 @@ fn a_text_that_was_replaced_is_not_an_annotators() {
 }
 
 #[test]
-fn vlnce_stands_on_the_floor_in_habitats_frame() {
+fn vlnce_positions_are_on_the_floor_in_habitats_frame() {
     let dataset = written(Format::Vlnce, &[episode("3", None, &["Walk on."])]);
     let episode = &dataset["episodes"][0];
     assert_eq!(episode["reference_path"], json!([[0.0, 0.0, -0.0], [0.0, 0.0, -2.0], [3.0, 0.0, -2.0]]));
@@ -197,7 +197,7 @@ fn vlnce_keeps_a_vocabulary_that_agents_know() {
 }
 
 #[test]
-fn formats_that_need_viewpoints_or_floors_say_so() {
+fn writers_refuse_paths_without_viewpoints_or_floors() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
     let scene = SceneId::new("house1").unwrap();
@@ -210,7 +210,7 @@ fn formats_that_need_viewpoints_or_floors_say_so() {
 }
 
 #[test]
-fn a_path_without_poses_is_exported_nowhere_as_if_it_had_some() {
+fn no_writer_invents_poses_for_a_path_without_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("export.json");
     let video = wayword_core::Path { motion: Motion::Unknown, ..path("7", None) };
@@ -226,7 +226,7 @@ fn a_path_without_poses_is_exported_nowhere_as_if_it_had_some() {
 }
 
 #[test]
-fn a_sidecar_lies_beside_its_dataset() {
+fn write_sidecar_puts_the_file_next_to_its_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let dataset = folder.path().join("d.json.gz");
     let sidecar = write_sidecar(&dataset, &[json!({"episode_id": "0_0"}), json!({"episode_id": "0_1"})]).unwrap();

@@ -6,8 +6,6 @@ use serde_json::{Value, json};
 use std::path::Path;
 use wayword_formats::{Episode, Format, read, rxr, vlnce};
 
-mod common;
-
 #[test]
 fn rxr_names_the_language_of_each_instruction() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/rxr_languages.jsonl");
@@ -27,23 +25,23 @@ fn a_language_that_was_read_is_written_again() {
 }
 
 #[test]
-fn other_formats_have_no_language_unless_an_episode_of_vlnce_says_one() {
+fn only_rxr_and_tagged_vlnce_episodes_have_a_language() {
     let folder = tempfile::tempdir().unwrap();
     let read_one = |format: Format, item: Value| -> Episode {
         let file = folder.path().join(format.name());
-        std::fs::write(&file, common::text(format, &[item])).unwrap();
+        std::fs::write(&file, crate::common::text(format, &[item])).unwrap();
         format.read(&file).unwrap().remove(0)
     };
     for format in [Format::R2r, Format::Reverie, Format::Vlnce, Format::Wayword] {
-        let episode = read_one(format, common::items(format).remove(0));
+        let episode = read_one(format, crate::common::items(format).remove(0));
         assert_eq!(episode.language(0), None, "{format}");
     }
-    let mut item = common::items(Format::Vlnce).remove(0);
+    let mut item = crate::common::items(Format::Vlnce).remove(0);
     item["instruction"]["language"] = json!("hi-IN");
     assert_eq!(read_one(Format::Vlnce, item.clone()).language(0), Some("hi-IN"));
     item["instruction"]["language"] = json!(7);
     let file = folder.path().join("wrong");
-    std::fs::write(&file, common::text(Format::Vlnce, &[item])).unwrap();
+    std::fs::write(&file, crate::common::text(Format::Vlnce, &[item])).unwrap();
     let refused = vlnce::read(&file).unwrap_err().to_string();
     assert!(refused.contains("instruction.language"), "{refused}");
 }

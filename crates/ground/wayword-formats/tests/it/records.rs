@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use std::{
@@ -17,7 +15,7 @@ use wayword_formats::{
 };
 
 fn records(folder: &Path, platform: &str, scenes: &[usize]) -> PathBuf {
-    let template = &common::items(Format::Wayword)[0];
+    let template = &crate::common::items(Format::Wayword)[0];
     let record = |(n, scene): (usize, &usize)| {
         let mut record = template.clone();
         record.as_object_mut().unwrap().shift_remove("split");
@@ -28,7 +26,7 @@ fn records(folder: &Path, platform: &str, scenes: &[usize]) -> PathBuf {
     };
     let records: Vec<Value> = scenes.iter().enumerate().map(record).collect();
     let file = folder.join(format!("{platform}.jsonl"));
-    std::fs::write(&file, common::text(Format::Wayword, &records)).unwrap();
+    std::fs::write(&file, crate::common::text(Format::Wayword, &records)).unwrap();
     file
 }
 
@@ -93,7 +91,7 @@ fn another_seed_chooses_other_scenes() {
 }
 
 #[test]
-fn what_cannot_be_in_one_dataset_is_refused() {
+fn merge_refuses_records_that_cannot_be_together() {
     let folder = tempfile::tempdir().unwrap();
     let file = records(folder.path(), "house", &[1, 1]);
     let twice = jsonl::merge(&[&file, &file]).unwrap_err().to_string();
@@ -145,7 +143,7 @@ fn items_on_one_path_of_a_dataset_keep_its_name() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("records.jsonl");
     let record = |(item, path_id): (&str, Option<Value>)| {
-        let mut record = common::items(Format::Wayword)[0].clone();
+        let mut record = crate::common::items(Format::Wayword)[0].clone();
         record["path"]["id"] = json!(item);
         if let Some(path_id) = path_id {
             record["path_id"] = path_id;
@@ -154,7 +152,7 @@ fn items_on_one_path_of_a_dataset_keep_its_name() {
     };
     let write = |items: Vec<(&str, Option<Value>)>| {
         let items: Vec<Value> = items.into_iter().map(record).collect();
-        std::fs::write(&file, common::text(Format::Wayword, &items)).unwrap();
+        std::fs::write(&file, crate::common::text(Format::Wayword, &items)).unwrap();
     };
     write(vec![("12_3", Some(json!("12"))), ("12_4", Some(json!(12))), ("13_5", None)]);
     let path_ids: Vec<_> = Format::Wayword.read(&file).unwrap().into_iter().map(|episode| episode.path_id).collect();
@@ -166,7 +164,7 @@ fn items_on_one_path_of_a_dataset_keep_its_name() {
     }
 }
 
-/// Whatever the share and the seed, nothing is trained on what is officially held out.
+/// Scenes that are officially held out are never for training, whatever the share and the seed.
 #[test]
 fn scenes_that_are_officially_held_out_are_for_val() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,6 @@
-//! An error names the file, the item and the field, and says what to do.
+//! Errors about files: they name the file, the item and the field, and give advice.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
-mod common;
 
 use serde_json::{Value, json};
 use std::io::Write;
@@ -18,9 +16,9 @@ fn refusal(format: Format, name: &str, bytes: &[u8]) -> String {
 }
 
 fn refusal_of(format: Format, field: &str, value: Value) -> String {
-    let mut items = common::items(format);
+    let mut items = crate::common::items(format);
     *items[1].pointer_mut(field).unwrap() = value;
-    refusal(format, "data.json", common::text(format, &items).as_bytes())
+    refusal(format, "data.json", crate::common::text(format, &items).as_bytes())
 }
 
 #[test]
@@ -50,8 +48,8 @@ fn a_refusal_names_file_item_and_field() {
 }
 
 #[test]
-fn json_that_is_none_is_refused_where_it_breaks() {
-    let text = common::text(Format::R2r, &common::items(Format::R2r));
+fn broken_json_is_refused_at_the_place_where_it_breaks() {
+    let text = crate::common::text(Format::R2r, &crate::common::items(Format::R2r));
     let at = text.rfind("1.5").unwrap();
     assert_eq!(
         refusal(Format::R2r, "data.json", &text.as_bytes()[..at]),
@@ -82,7 +80,7 @@ fn evidence_that_leads_out_of_its_text_or_path_is_refused() {
 }
 
 #[test]
-fn a_long_text_is_refused_before_it_is_held() {
+fn a_long_text_is_refused_before_it_is_in_memory() {
     let long = format!("\"{}\"", "x".repeat(3 << 20));
     for (format, text, place) in [
         (Format::R2r, long.clone(), ""),
@@ -107,7 +105,7 @@ fn a_long_text_is_refused_before_it_is_held() {
 #[test]
 fn a_mark_before_utf_8_is_passed_over_and_utf_16_is_named() {
     for (format, name) in [(Format::R2r, "data.json"), (Format::Rxr, "data.jsonl"), (Format::Vlnce, "data.json")] {
-        let text = common::text(format, &common::items(format));
+        let text = crate::common::text(format, &crate::common::items(format));
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(name);
         std::fs::write(&file, format!("\u{feff}{text}")).unwrap();
@@ -134,7 +132,7 @@ fn a_pipe_is_refused_and_not_waited_for() {
 }
 
 #[test]
-fn limits_on_texts_and_lists_hold() {
+fn limits_on_texts_and_lists_are_enforced() {
     let long = refusal_of(Format::R2r, "/instructions/0", json!("x".repeat(20_001)));
     assert!(long.contains("field \"instructions[0]\": it has 20001 bytes"), "{long}");
     let many = refusal_of(Format::R2r, "/instructions", json!(vec!["x"; 1_001]));
@@ -168,7 +166,7 @@ fn a_file_of_more_than_a_gibibyte_is_not_even_read() {
 }
 
 #[test]
-fn what_is_no_dataset_is_told_so() {
+fn detect_explains_why_a_file_is_no_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("notes.txt");
     for text in ["", "hello", "[]", "[1]", "{\"a\": 1}"] {

@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
@@ -98,21 +96,22 @@ fn number_place(format: Format) -> &'static str {
 
 /// A damaged file, and whether a reader may accept it.
 fn damaged(format: Format, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
-    let mut items = common::items(format);
+    let mut items = crate::common::items(format);
     let index = dice.roll(items.len());
     let lines = matches!(format, Format::Rxr | Format::Wayword);
     let marked = |items: &mut Vec<Value>, place: &str| *items[index].pointer_mut(place).unwrap() = json!("MARK");
-    let render = |items: &[Value], with: &str| common::text(format, items).replace("\"MARK\"", with).into_bytes();
+    let render =
+        |items: &[Value], with: &str| crate::common::text(format, items).replace("\"MARK\"", with).into_bytes();
     match damage {
         Damage::Truncated => {
-            let mut text = common::text(format, &items).into_bytes();
+            let mut text = crate::common::text(format, &items).into_bytes();
             text.truncate(dice.roll(text.len() - 1));
             // A file of lines may end after any of them, and a line without its end may still be whole.
             let whole = lines && (text.is_empty() || text.ends_with(b"\n") || text.ends_with(b"}"));
             (text, whole)
         }
         Damage::ByteFlipped => {
-            let mut text = common::text(format, &items).into_bytes();
+            let mut text = crate::common::text(format, &items).into_bytes();
             let place = dice.roll(text.len());
             text[place] ^= 1 << dice.roll(8);
             (text, true)
@@ -146,7 +145,7 @@ fn damaged(format: Format, damage: Damage, dice: &mut Dice) -> (Vec<u8>, bool) {
             (render(&items, ""), false)
         }
         Damage::KeyTwice => {
-            let text = common::text(format, &items);
+            let text = crate::common::text(format, &items);
             let keys = ["\"path\":", "\"heading\":", "\"info\":", "\"text\":", "\"scan\":", "\"goals\":"];
             let key = keys.iter().find(|key| text.contains(**key)).unwrap();
             (text.replacen(key, &format!("{key} 1, {key}"), 1).into_bytes(), false)

@@ -1,0 +1,12 @@
+//! The integration tests of `wayword-formats`, one program: a module for each topic.
+
+mod common;
+mod exports;
+mod hear;
+mod languages;
+mod mutations;
+mod real_files;
+mod records;
+mod refusals;
+mod round_trip;
+mod submissions;
