@@ -1,4 +1,5 @@
-//! The vocabulary of questions and answers: closed word lists by which they are read.
+//! Word lists for reading a model's questions and answers: which words mean yes or no, doubt, several things, and so
+//! on.
 
 crate::data::lists! {
     "words/answers.txt";

@@ -1,4 +1,5 @@
-//! What models say around a text that they were asked for: closed word lists by which it is recognised.
+//! Word lists that recognise chatter: the words that models put around a text that they were asked for ("Sure, here is
+//! the instruction:").
 
 crate::data::lists! {
     "words/chatter.txt";

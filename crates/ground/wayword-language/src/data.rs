@@ -46,7 +46,7 @@ pub(crate) fn list_name(line: &'static str) -> Option<&'static str> {
     line.strip_prefix('[')?.strip_suffix(']')
 }
 
-/// Makes a static of each closed list of a file, and a test that the names are those of the file.
+/// Makes a static of each closed list of a file, and a test that the names in the code are those of the file.
 macro_rules! lists {
     ($file:literal; words: $($words:ident),*; phrases: $($phrases:ident),*;) => {
         const LISTS: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/src/", $file));
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_of_words_may_go_on_in_the_next_line() {
+    fn phrases_may_continue_in_the_next_line() {
         assert_eq!(phrases(FILE, "two"), [vec!["not", "at", "all"], vec!["never"]]);
     }
 

@@ -1,4 +1,4 @@
-//! The vocabulary by which an instruction is split into parts and its directions are swapped.
+//! Word lists by which an instruction is cut into parts and its directions are swapped.
 
 crate::data::lists! {
     "words/directions.txt";

@@ -1,8 +1,9 @@
-//! In which language a text is written.
+//! Recognises the language of a text.
 //!
-//! The reader reads English. Whether a text is English decides what can be said of it: what it says in another language
-//! is not understood. A foreign script tells the language by itself. In Latin letters, a sentence is foreign where the
-//! reader knows few of its words, and the small words of a language tell which one.
+//! The reader knows English only, so a text in another language cannot be checked. A foreign script decides by itself.
+//! In Latin letters, a sentence is foreign if the reader knows few of its words, and the small words of a language
+//! ("der", "est") name it.
+//! reader knows few of its words, and the small words of a language show which one.
 
 use crate::{
     data,
@@ -16,7 +17,7 @@ const LIST: &str = include_str!("words/languages.txt");
 /// The language of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Language {
-    /// English, or too short to tell.
+    /// English, or too short to decide.
     English,
     /// Some sentences or words are in another language, of this name.
     Partly(&'static str),
@@ -99,8 +100,8 @@ impl Language {
         }
     }
 
-    /// The language of a text that its dataset gives a tag. A tag of another language is believed; "en" is not where the
-    /// text says otherwise, because people mix languages.
+    /// The language of a text that its dataset gives a tag. A tag of another language is believed. A tag "en" is not
+    /// believed against the text itself, because people mix languages.
     #[must_use]
     pub fn or_tagged(self, tag: Option<&str>) -> Self {
         match tag.map(Self::tagged) {
@@ -135,7 +136,7 @@ impl fmt::Display for Language {
     }
 }
 
-/// The language of a text, of which these are the words as the reader takes them.
+/// Decides the language of a text from its letters, and then from its words as the reader took them.
 #[must_use]
 pub(crate) fn language(text: &str, words: &[Word]) -> Language {
     let by_script = by_script(text);
@@ -160,7 +161,7 @@ pub(crate) fn language(text: &str, words: &[Word]) -> Language {
     }
 }
 
-/// What the letters of a text say.
+/// The language by the scripts of the letters.
 fn by_script(text: &str) -> Language {
     let mut latin = 0;
     let mut others: BTreeMap<&'static str, usize> = BTreeMap::new();
@@ -170,7 +171,7 @@ fn by_script(text: &str) -> Language {
             None => latin += 1,
         }
     }
-    // Kana stand in Japanese texts only.
+    // Kana occur in Japanese texts only.
     let japanese = others.contains_key("Japanese");
     let other: usize = others.values().sum();
     let most = others.into_iter().max_by_key(|(_, count)| *count).map(|(name, _)| name);
@@ -183,7 +184,7 @@ fn by_script(text: &str) -> Language {
     }
 }
 
-/// What a sentence or a text in Latin letters consists of.
+/// Counts over a sentence or a text in Latin letters, which decide its language.
 #[derive(Debug, Default)]
 struct Seen {
     words: usize,
@@ -325,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tag_of_another_language_is_believed() {
+    fn or_tagged_believes_tags_of_other_languages() {
         assert_eq!(Language::tagged("en-IN"), Language::English);
         assert_eq!(Language::tagged("te-IN"), Language::Other("Telugu"));
         assert_eq!(Language::tagged("hi_IN"), Language::Other("Hindi"));

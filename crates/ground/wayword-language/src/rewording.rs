@@ -1,4 +1,5 @@
-//! Which words of a text tell a turn, a side, a climb or a way by a place, and how the text would tell it otherwise.
+//! Finds the words of a text for a turn, a side, a climb or a way by a place, and gives their opposites. Repairs and
+//! alternatives replace just these words.
 
 use crate::text::{Token, tokens};
 
@@ -10,7 +11,7 @@ crate::data::lists! {
 
 /// How far before its side the words of a turn may begin, tokens.
 const TURN_REACH: usize = 6;
-/// How far before a place the words may stand that say how the walk goes by it, tokens.
+/// How far before a place the words for the walk's way by it may be, tokens.
 const WAY_REACH: usize = 5;
 
 /// A text with its tokens. Byte ranges that do not fit it have no words.
@@ -20,7 +21,7 @@ pub struct Spelt<'a> {
     tokens: Vec<Token>,
 }
 
-/// Words that say how a walk goes by a place.
+/// Words for the way by which a walk goes by a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Way {
     /// Their byte range: "walk past".
@@ -49,7 +50,8 @@ impl<'a> Spelt<'a> {
         self.tokens.get(first..end.max(first)).unwrap_or_default()
     }
 
-    /// The words of a turn, from its verb on: "turn slightly left". `side` is the byte range of the word that tells the side.
+    /// The words of a turn, from its verb on: "turn slightly left". `side` is the byte range of the word "left" or
+    /// "right".
     #[must_use]
     pub fn turn(&self, step: [usize; 2], side: [usize; 2]) -> [usize; 2] {
         let before = self.within([step[0], side[0]]);
@@ -61,7 +63,7 @@ impl<'a> Spelt<'a> {
         [from, next.map_or(side[1], |next| next.span[1])]
     }
 
-    /// The first words of a step that say on which side something is: "on your left".
+    /// The first words of a step that locate something on a side: "on your left".
     #[must_use]
     pub fn side(&self, step: [usize; 2]) -> Option<[usize; 2]> {
         let tokens = self.within(step);
@@ -75,8 +77,7 @@ impl<'a> Spelt<'a> {
         self.exchanged(span, &SIDES)
     }
 
-    /// The word of a step that tells the way of its climb, and the word for the other way. In "walk down the hall and up the
-    /// stairs" it is the last one.
+    /// The last word of a step for up or down, and its opposite. In "walk down the hall and up the stairs" it is "up".
     #[must_use]
     pub fn climb(&self, step: [usize; 2], is_up: bool) -> Option<([usize; 2], String)> {
         let says = |token: &&Token| CLIMBS.chunks_exact(2).any(|pair| pair[usize::from(!is_up)] == token.word);
@@ -84,7 +85,7 @@ impl<'a> Spelt<'a> {
         Some((span, self.exchanged(span, &CLIMBS)?))
     }
 
-    /// A step without the marks and words that join it to others; `None` where nothing is left.
+    /// A step without the marks and words that join it to others; `None` where no other words are left.
     #[must_use]
     pub fn step(&self, step: [usize; 2]) -> Option<[usize; 2]> {
         let tells = |token: &&Token| token.is_word() && !LINKING.contains(&&*token.word);
@@ -92,7 +93,7 @@ impl<'a> Spelt<'a> {
         Some([tokens.iter().find(tells)?.span[0], tokens.iter().rev().find(tells)?.span[1]])
     }
 
-    /// The words before a place that say how the walk goes by it: "walk past", "exit". `None` where no such words are there.
+    /// The words before a place for the way by it: "walk past", "exit". `None` where there are none.
     #[must_use]
     pub fn way(&self, step: [usize; 2], place: [usize; 2]) -> Option<Way> {
         let before = self.within([step[0], place[0]]);
@@ -109,7 +110,8 @@ impl<'a> Spelt<'a> {
         Some(Way { span: [from, near[last].span[1]], verb })
     }
 
-    /// Whether no word before a name describes what it names: an article, or nothing but words of the way, is there.
+    /// Whether no word before a name describes the thing: before it is an article or a word of the way, or no word at
+    /// all.
     #[must_use]
     pub fn is_bare(&self, name: [usize; 2]) -> bool {
         let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
@@ -117,7 +119,7 @@ impl<'a> Spelt<'a> {
         !before.is_some_and(is_of_name)
     }
 
-    /// A name with the article "a" or "an" that stands right before it, because that depends on the name.
+    /// A name together with the article "a" or "an" right before it, because the article depends on the name.
     #[must_use]
     pub fn with_its_article(&self, name: [usize; 2]) -> [usize; 2] {
         let before = self.tokens[..self.tokens.partition_point(|token| token.span[1] <= name[0])].last();
@@ -177,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_is_told_from_its_verb_on() {
+    fn turn_begins_with_the_verb() {
         for (text, side, told, other) in [
             ("Turn left.", "left", "Turn left", "Turn right"),
             ("then take a sharp Right at the sofa", "Right", "take a sharp Right", "take a sharp Left"),
@@ -205,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_by_a_place_is_a_preposition_with_its_verb_or_a_verb() {
+    fn way_finds_a_verb_or_a_preposition_with_its_verb() {
         for (text, words, verb) in [
             ("Walk past the sofa", "Walk past", "walk "),
             ("and head out of the large sofa", "head out of", "head "),
@@ -227,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn an_article_before_a_name_goes_with_it() {
+    fn with_its_article_includes_a_or_an() {
         let (text, spelt) = ("by an oven", Spelt::of("by an oven"));
         assert_eq!(spelt.words(spelt.with_its_article(range(text, "oven"))), "an oven");
         assert_eq!(spelt.with_its_article([3, 5]), [3, 5]);

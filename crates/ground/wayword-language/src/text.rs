@@ -1,4 +1,4 @@
-//! Texts as words and sentences, with byte ranges.
+//! Splits texts into words, marks and sentences, with byte ranges.
 
 use crate::reading::vocabulary as v;
 
@@ -25,9 +25,9 @@ impl Token {
     }
 }
 
-/// Abbreviations whose full stop does not end a sentence.
+/// Abbreviations with a full stop that does not end a sentence.
 const ABBREVIATIONS: [&str; 9] = ["approx", "appr", "ca", "vs", "mr", "mrs", "ms", "dr", "prof"];
-/// Abbreviations that may also end a sentence. If they do, a capital follows, or nothing.
+/// Abbreviations that may also end a sentence. If they do, the next word has a capital, or the text ends.
 const LAST_ABBREVIATIONS: [&str; 10] = ["etc", "ft", "yd", "yds", "cm", "deg", "incl", "excl", "max", "min"];
 
 /// The words and marks of a text. An apostrophe within a word belongs to the word, and the point within a number to the
@@ -106,7 +106,7 @@ pub fn capital(text: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The byte ranges of what stands between the blanks of a text.
+/// The byte ranges of the pieces between the blanks of a text.
 pub fn pieces(text: &str) -> impl Iterator<Item = [usize; 2]> + '_ {
     let places = text.split_inclusive(char::is_whitespace).scan(0, |done, piece| {
         let from = *done;
@@ -134,7 +134,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn pieces_are_what_stands_between_blanks() {
+    fn pieces_are_the_ranges_between_blanks() {
         for text in ["", " ", "  turn left,\n\t門 🪑 ."] {
             let told: Vec<&str> = pieces(text).map(|[from, to]| &text[from..to]).collect();
             assert_eq!(told, text.split_whitespace().collect::<Vec<_>>());
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn words_sentences_and_marks_are_told_apart() {
+    fn words_sentences_and_marks_are_counted() {
         let text = "Walk to the robot's den. Then turn left, and wait!";
         assert_eq!(word_count(text), 10);
         assert_eq!(sentence_count(text), 2);

@@ -1,4 +1,4 @@
-//! Colours, and which of them people do not keep apart.
+//! Which colour words people use for the same colour, so that a "beige" sofa is not a mistake for a "cream" one.
 
 use crate::data;
 use std::sync::LazyLock;
@@ -7,7 +7,7 @@ static FAMILIES: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
     data::lines(include_str!("../words/colours.txt")).map(|line| data::names(line).collect()).collect()
 });
 
-/// Whether two colours may be said of one thing: they are equal up to a shade ("dark brown", "brown"), or near each
+/// Whether two colours may describe one thing: they are equal up to a shade ("dark brown", "brown"), or near each
 /// other (cream and beige).
 #[must_use]
 pub fn same_colour(a: &str, b: &str) -> bool {

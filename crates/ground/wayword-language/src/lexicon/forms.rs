@@ -1,4 +1,4 @@
-//! Forms of a name: with its article, singular and plural, with a number.
+//! Forms of a name: with its article, in the singular and the plural, with a number.
 
 use super::normal_word;
 use crate::text::words;

@@ -1,4 +1,4 @@
-//! The normal spelling of a name, by which names are compared.
+//! The normal spelling of a name. Names are compared in it, so that "Coffee tables" and "coffee table" agree.
 
 /// A name in normal spelling: lower case, words separated by one space, each in the singular, without punctuation.
 #[must_use]
@@ -19,12 +19,12 @@ const IRREGULAR: [(&str, &str); 7] = [
 ];
 /// Words that have no singular: to clothe is something else.
 const ALWAYS_PLURAL: [&str; 1] = ["clothes"];
-/// Words in "-ie", whose plurals look like those of words in "-y".
+/// Words in "-ie". Their plurals look like those of words in "-y".
 const IN_IE: [&str; 14] = [
     "cookie", "brownie", "movie", "hoodie", "smoothie", "walkie", "talkie", "veggie", "genie", "zombie", "foodie",
     "calorie", "prairie", "birdie",
 ];
-/// Words in "-che", whose plurals look like those of words in "-ch".
+/// Words in "-che". Their plurals look like those of words in "-ch".
 const IN_CHE: [&str; 6] = ["niche", "cache", "quiche", "creche", "brioche", "porsche"];
 
 /// One word in lower case and in the singular.

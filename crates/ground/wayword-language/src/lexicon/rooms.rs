@@ -1,4 +1,4 @@
-//! Rooms and their names.
+//! The names of rooms: which ones mean the same room, and which rooms people confuse.
 
 use super::normal;
 use crate::data;

@@ -1,4 +1,5 @@
-//! Objects, what they are kinds of, and what one can do with them.
+//! The names of objects: which ones mean the same, which kinds they belong to, and their class, by which the writer
+//! chooses tasks.
 
 use super::normal;
 use crate::data;
@@ -6,7 +7,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 
 const LIST: &str = include_str!("../words/objects.txt");
 
-/// What one can do with a thing. The writer chooses tasks by it.
+/// The class of a thing by its use: a seat, a container, a light. The writer chooses tasks by it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs)] // The names explain themselves.
 pub enum Class {
@@ -54,7 +55,7 @@ pub enum Class {
 pub struct Thing {
     /// Its usual name.
     pub name: &'static str,
-    /// What one can do with it.
+    /// Its class.
     pub class: Class,
     /// From 0 (never a landmark) to 3 (a landmark that is seen from afar).
     pub salience: u8,
@@ -183,7 +184,7 @@ pub fn is_thing(normal_name: &str) -> bool {
 }
 
 /// Whether a name means a part of the building itself: a wall, a floor, a ceiling, a corner, a doorway. Texts name
-/// them everywhere and labels hardly ever, so nobody's silence about one says that there is none.
+/// such parts everywhere and labels hardly ever, so missing evidence of one is no evidence of absence.
 #[must_use]
 pub fn is_fabric(name: &str) -> bool {
     thing(name).is_some_and(|thing| thing.class == Class::Fabric)

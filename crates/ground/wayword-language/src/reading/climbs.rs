@@ -1,4 +1,5 @@
-//! Stairs and storeys.
+//! Finds stairs and storeys in a text, and separates commands to climb ("go up the stairs") from places up there ("the
+//! bedroom upstairs").
 
 #[cfg(test)]
 mod tests;
@@ -41,7 +42,7 @@ fn is_floor(word: &str) -> bool {
     matches!(word, "floor" | "floors" | "level" | "levels" | "story" | "storey")
 }
 
-/// What is climbed.
+/// How far a climb goes: a flight of stairs, or a few steps.
 #[derive(Clone, Copy)]
 enum Way {
     Flight,
@@ -136,7 +137,8 @@ impl<'a> Text<'a> {
         let verb = self.before_climb(at).map_or("", |before| self.word(before));
         let goes =
             is_verb || matches!(verb, "go" | "going" | "head" | "heading" | "walk" | "walking" | "climb" | "step");
-        // "Ascend the ramp", "descend to the kitchen"; what is behind "up" and "down" decides whether those are climbs.
+        // "Ascend the ramp", "descend to the kitchen"; for "up" and "down", the words behind them decide whether those
+        // are climbs.
         let climbs = if is_verb { self.word(at + 1) != "down" } else { ends };
         (goes && climbs && self.leads_on(at).is_none()).then_some(climb)
     }
@@ -184,7 +186,7 @@ impl<'a> Text<'a> {
         Some(if few { Way::Steps } else { Way::Flight })
     }
 
-    /// "Down the tiled floor", "down the wood floor hallway": what one walks on, and no storey.
+    /// "Down the tiled floor", "down the wood floor hallway": the ground that one walks on, and no storey.
     fn is_underfoot(&self, floor: usize) -> bool {
         let next = normal_word(self.word(floor + 1));
         v::FLOORINGS.contains(&self.before(floor)) || is_room(&next) || matches!(next.as_str(), "path" | "walkway")
@@ -201,7 +203,7 @@ impl<'a> Text<'a> {
         taken.then_some(Way::Flight)
     }
 
-    /// Whether the words are a command to climb, and do not say that a place is upstairs or downstairs.
+    /// Whether the words are a command to climb, and not a place upstairs or downstairs.
     fn commands(&self, at: usize) -> bool {
         let Some(before) = self.before_climb(at) else { return true };
         let name = normal_word(self.word(before));
@@ -232,7 +234,7 @@ impl<'a> Text<'a> {
         } else if self.word(at) == "top" && is_floor(self.word(at + 1)) {
             (None, at + 1)
         } else {
-            // "Up one floor" and "two floors up" say how many, and not which.
+            // "Up one floor" and "two floors up" give a number of floors, and not the number of a floor.
             let is_one = matches!(self.word(at + 1), "floor" | "level" | "story" | "storey");
             (Some(is_numbered(at).filter(|_| is_one && self.word(at) != "one")?), at + 1)
         };

@@ -1,4 +1,4 @@
-//! The colours of places.
+//! Finds the colours that a text gives to places.
 
 use super::{tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
@@ -30,7 +30,7 @@ impl<'a> Colours<'a> {
         Some(self.named(self.last[from.checked_sub(1)?]?))
     }
 
-    /// "Is green", "that are dark red": the colour that is said of a place right behind it.
+    /// "Is green", "that are dark red": a colour that the words right behind a place give it.
     pub(super) fn behind(&self, to: usize) -> Option<String> {
         let word = |at: usize| self.tokens.word(at);
         let at = to + usize::from(matches!(word(to), "that" | "which"));

@@ -1,9 +1,9 @@
-//! Words of the compass: "head north", "the east wall".
+//! Finds words of the compass: "head north", "the east wall".
 
 use super::{Compass, Event, What, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 
-/// What a text says by the compass.
+/// The directions of the compass that a text names.
 pub(super) fn compass(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let mut events = Vec::new();
     let mut at = 0;
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_and_places_are_told_by_the_compass() {
+    fn compass_finds_ways_and_places() {
         for (text, towards, goes) in [
             ("Head north.", Compass::North, true),
             ("Turn to the south-west and stop.", Compass::SouthWest, true),

@@ -1,4 +1,5 @@
-//! What the reader takes each word of a text for, and which clauses it understood.
+//! Gives each word of a text a role, and finds the clauses that the reader understood. The share of understood words
+//! shows how far a verdict on the text can be trusted.
 
 use super::{
     Clause, Event, Role, What, Word, numbers, places, role_words as r, stems::is_form_of, tokens::Tokens,
@@ -37,7 +38,7 @@ fn named(tokens: Tokens<'_>, known: &BTreeSet<String>) -> Vec<bool> {
     named
 }
 
-/// For each token, what the event that it belongs to makes of it.
+/// For each token, the role that it gets from the event that it belongs to.
 fn told(tokens: Tokens<'_>, events: &[Event]) -> Vec<Option<Role>> {
     let mut told = vec![None; tokens.len()];
     for event in events {
@@ -129,7 +130,7 @@ impl<'a> Text<'a> {
         None
     }
 
-    /// A number counts what follows it, or tells which one is meant.
+    /// A number counts the noun behind it, or picks one of several.
     fn number(&self, at: usize) -> Option<Role> {
         let word = self.word(at);
         if numbers::ordinal(word).is_some() {
@@ -178,7 +179,7 @@ impl<'a> Text<'a> {
         self.named.get(at) == Some(&true) || v::HAVE_SIDES.contains(&self.word(at))
     }
 
-    /// The role of a word that it has anywhere.
+    /// The role that a word has wherever it occurs.
     fn by_list(&self, word: &str) -> Option<Role> {
         let name = normal_word(word);
         let lists: [(&[&str], Role); 8] = [
@@ -201,7 +202,7 @@ impl<'a> Text<'a> {
             .or_else(|| (is_thing(&name) || is_room(&name)).then_some(Role::Place))
     }
 
-    /// The clauses: each is understood unless the first thing that it says is not.
+    /// The clauses: each is understood unless the first word with a meaning in it is unknown.
     fn clauses(&self, roles: &[Option<Role>]) -> Vec<Clause> {
         let count = self.clauses.last().map_or(0, |last| last + 1);
         let mut clauses = vec![Clause { span: [0, 0], understood: true }; count];
@@ -280,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_list_has_is_not_understood() {
+    fn words_that_no_list_has_are_unknown() {
         for (text, wanted) in [
             ("Walk past the zorble and the quirked sofa.", &["zorble", "quirked"][..]),
             ("Grimble the lamp.", &["Grimble"]),
@@ -296,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_evidence_names_is_understood() {
+    fn names_of_the_evidence_are_understood() {
         let known = BTreeSet::from(["zorble".to_owned()]);
         let reading = read("Walk past the zorble.", &known);
         assert!(reading.words.iter().all(Word::is_understood) && reading.clauses[0].understood);

@@ -1,4 +1,5 @@
-//! Denials: what an instruction says not to do, or says is not there.
+//! Finds denials: actions that an instruction forbids, and things that it declares absent. The checks must not take
+//! "do not turn right" for a turn.
 
 use super::{tokens::Tokens, vocabulary as v};
 
@@ -47,7 +48,7 @@ fn by_words(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<bool> {
     (0..tokens.len()).map(is_denied).collect()
 }
 
-/// What a token begins to deny.
+/// How far the denial reaches that begins at a token, if one does.
 fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
     let (word, next) = (tokens.word(at), tokens.word(at + 1));
     let is_not = matches!(word, "not" | "cannot" | "dont" | "cant") || word.ends_with("n't") || word.ends_with("n’t");
@@ -85,9 +86,9 @@ fn begins(tokens: Tokens<'_>, at: usize) -> Reach {
     }
 }
 
-/// "You can't miss the sofa", "not far from the sofa", "not only", "don't forget to turn left": these deny nothing.
+/// "You can't miss the sofa", "not far from the sofa", "not only", "don't forget to turn left": a "not" that affirms.
 fn affirms(tokens: Tokens<'_>, at: usize) -> bool {
-    // "Until you can't go any further turn left": what cannot be done is no command.
+    // "Until you can't go any further turn left": an impossible action is no command.
     let is_can = matches!(tokens.word(at), "cannot" | "cant" | "can't" | "can’t") || tokens.before(at) == "can";
     if is_can && v::GOING.contains(&tokens.word(at + 1)) {
         return true;
@@ -117,7 +118,7 @@ fn affirms(tokens: Tokens<'_>, at: usize) -> bool {
     )
 }
 
-/// "If you reach the stairs, you have gone too far": what the sentence says after its "if" is not done.
+/// "If you reach the stairs, you have gone too far": the condition after the "if" is not part of the walk.
 fn too_far(tokens: Tokens<'_>, clauses: &[usize], denied: &mut [bool]) {
     let mut from = 0;
     while from < tokens.len() {
@@ -162,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_or_not_done_is_denied() {
+    fn absent_things_and_forbidden_actions_are_denied() {
         for (text, claimed, denied) in [
             ("There is no piano.", &[][..], &["piano"][..]),
             ("There is no piano in the kitchen.", &["kitchen"], &["piano"]),
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_not_that_affirms_denies_nothing() {
+    fn denial_ignores_a_not_that_affirms() {
         for text in [
             "You can't miss the sofa.",
             "You cannot miss the sofa.",

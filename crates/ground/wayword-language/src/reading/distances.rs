@@ -1,4 +1,4 @@
-//! How far a text says to walk.
+//! Finds the distances that a text asks to walk ("500 meters", "a few steps"), as ranges in metres.
 
 use super::{Event, What, numbers::cardinal, tokens::Tokens, vocabulary as v};
 
@@ -6,11 +6,11 @@ use super::{Event, What, numbers::cardinal, tokens::Tokens, vocabulary as v};
 const FOOT_M: f64 = 0.3048;
 /// People's steps are that long, metres: from short to long ones.
 const STEP_M: [f64; 2] = [0.4, 0.9];
-/// Farther than anybody is told to walk, metres. Greater numbers are mistakes.
+/// Farther than any text asks to walk, metres. Greater numbers are mistakes.
 const FARTHEST_M: f64 = 100_000.0;
 
-/// The distances that a text says to walk. A distance that only tells where something is ("two feet from the sofa") is
-/// none, and neither are the steps of stairs.
+/// The distances that a text asks to walk. A distance that only locates something ("two feet from the sofa") is none,
+/// and neither are the steps of stairs.
 pub(super) fn distances(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let mut events = Vec::new();
     let mut at = 0;
@@ -60,7 +60,7 @@ fn joined(word: &str) -> Option<(f64, [f64; 2])> {
     Some((number, [unit_m(unit)?; 2]))
 }
 
-/// The least and the greatest number that words say, and the token behind them.
+/// The least and the greatest number that words can mean, and the token behind them.
 fn numbers(tokens: Tokens<'_>, at: usize) -> Option<([f64; 2], usize)> {
     let word = |at: usize| tokens.word(at);
     let exact = |number: f64, end| Some(([number; 2], end));
@@ -140,7 +140,7 @@ fn unit_m(word: &str) -> Option<f64> {
     }
 }
 
-/// Whether somebody walks that far.
+/// Whether the walker walks that far, and the distance does not locate or measure a thing.
 fn is_walked(tokens: Tokens<'_>, at: usize, told: &Told) -> bool {
     // "Three feet from the sofa", "two metres to the left of it", "a ten foot ladder".
     let next = tokens.word(told.end);
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn where_something_is_and_steps_of_stairs_are_no_distances() {
+    fn locations_and_steps_of_stairs_are_no_distances() {
         for text in [
             "Stop three feet from the sofa.",
             "Stop two metres in front of the sofa.",

@@ -1,4 +1,5 @@
-//! Tests of what a long text costs. They count looks at its tokens, because time depends on the machine.
+//! Tests that the cost of reading grows in proportion to a text's length. They count looks at its tokens, because time
+//! depends on the machine.
 
 use super::{read, vocabulary as v};
 use std::{cell::Cell, collections::BTreeSet};

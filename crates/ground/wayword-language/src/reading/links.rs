@@ -1,9 +1,10 @@
-//! How a place is linked to its sentence by the words before it.
+//! Finds how the words before a place link it to its sentence: as a goal, as a place that one is in, or as one that is
+//! only nearby.
 
 use super::{Link, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, normal_word};
 
-/// How far before a place its preposition may stand, words.
+/// How far before a place its preposition may be, words.
 const REACH: usize = 7;
 
 /// How the place that begins at a token is linked to its sentence.
@@ -30,7 +31,7 @@ pub(super) fn link(tokens: Tokens<'_>, clauses: &[usize], from: usize) -> Link {
         "of" if !matches!(before, "out" | "inside" | "end" | "middle" | "center" | "centre" | "top" | "bottom") => {
             Link::Beside
         }
-        // "The bathroom in the hallway" is beside it, "the bedroom across the hallway" is beyond it.
+        // "The bathroom in the hallway" is next to it, "the bedroom across the hallway" is beyond it.
         "in" | "at" | "on" | "across" if is_room(&normal_word(before)) => Link::Beside,
         "in" | "inside" | "within" | "at" | "on" | "upon" | "from" | "of" | "that" | "which" => Link::Within,
         "past" | "through" | "down" | "along" | "across" | "up" | "around" | "after" => Link::Along,
@@ -80,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn a_goal_and_what_leads_there_are_told_apart() {
+    fn link_separates_a_goal_from_the_way_there() {
         for text in ["walk to the kitchen", "enter the kitchen", "turn left into the kitchen"] {
             assert_eq!(last(text), Link::Goal, "{text}");
         }

@@ -1,8 +1,9 @@
 //! Reads an instruction for the checks: landmarks, rooms, turns, climbs and storeys in the order of the text, and the
 //! closing task.
 //!
-//! The reader does not depend on who wrote the text: it reads texts of people, of models and of Wayword's own writer in
-//! the same way.
+//! The reader does not depend on the author of a text: people's texts, models' texts and those of Wayword's own writer
+//! are read in the same way. Each file here reads one kind of statement by closed word lists; the lists are in
+//! `words/`.
 
 mod climbs;
 mod colours;
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_to_be_done_is_not_claimed() {
+    fn forbidden_actions_are_not_claimed() {
         let claims = |text: &str| {
             let events = read(text, &BTreeSet::new()).claims().events;
             events.iter().filter(|event| event.what != What::Stop).count()
@@ -206,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_lexicon_lacks_is_still_a_landmark() {
+    fn a_noun_outside_the_lexicon_is_still_a_landmark() {
         assert_eq!(told("walk to the shiny gizmo and stop"), ["shiny gizmo"]);
         for (text, gizmo) in [
             ("go past that xylorimba", "xylorimba"),
@@ -233,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_picture_shows_is_not_there() {
+    fn objects_in_a_picture_are_not_at_the_place() {
         assert_eq!(told("stop at the picture of two hummingbirds"), ["picture"]);
         assert_eq!(told("stop at the bowl of two hummingbirds"), ["bowl", "hummingbird"]);
     }

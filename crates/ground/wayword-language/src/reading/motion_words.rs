@@ -1,4 +1,4 @@
-//! Closed word lists by which the checks tell how a motion is meant.
+//! Word lists by which the checks decide how a motion is meant.
 
 crate::data::lists! {
     "words/motions.txt";

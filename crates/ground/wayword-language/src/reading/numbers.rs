@@ -3,10 +3,10 @@
 use super::{Ordinal, tokens::Tokens, vocabulary as v};
 use wayword_core::Side;
 
-/// How far before a noun phrase its number may stand, words.
+/// How far before a noun phrase its number may be, words.
 const REACH: usize = 5;
 
-/// The number words of a text that stand right before nouns.
+/// The number words of a text right before nouns.
 pub(super) struct Numbers<'a> {
     tokens: Tokens<'a>,
     /// For each token, where the run of adjectives and numbers before it begins.
@@ -16,7 +16,8 @@ pub(super) struct Numbers<'a> {
 }
 
 impl<'a> Numbers<'a> {
-    /// `spans` are the byte ranges of turns and storeys, whose sides and numbers are their own.
+    /// `spans` are the byte ranges of turns and storeys. Sides and numbers within them belong to those, and not to
+    /// places.
     pub(super) fn of(tokens: Tokens<'a>, spans: &[[usize; 2]]) -> Self {
         let mut others = vec![false; tokens.len()];
         for span in spans {

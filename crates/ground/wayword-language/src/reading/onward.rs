@@ -2,8 +2,8 @@
 
 use super::{Event, What, tokens::Tokens, vocabulary as v};
 
-/// "Walk straight ahead", "continue through the hallway": commands that an agent does not follow by staying where it
-/// is.
+/// "Walk straight ahead", "continue through the hallway": commands that an agent cannot follow by staying at its
+/// place.
 pub(super) fn onward(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let word = |at: usize| tokens.word(at);
     let on = |verb: usize| {

@@ -1,4 +1,4 @@
-//! Landmarks and rooms.
+//! Finds the landmarks and rooms of a text, with their side, colour, number, and how the walk goes by them.
 
 use super::{
     Event, Place, What, colours::Colours, distances::is_unit, links::link, numbers::Numbers, sides, task,
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 /// A run of tokens that names a place.
 struct Found {
-    /// Where the words begin that say which one it is: "bedroom" of "the second bedroom door".
+    /// Where the words begin that distinguish it: "bedroom" of "the second bedroom door".
     noun: usize,
     from: usize,
     to: usize,
@@ -39,7 +39,7 @@ pub(super) fn places(
         };
         at = next.as_ref().map_or(at + 1, |place| place.to);
         let Some(mut place) = next else { continue };
-        // "The kitchen table": a place right before another only says which one the other is. A basement does not,
+        // "The kitchen table": a place right before another only qualifies the other. A basement does not,
         // because it is a storey.
         let is_floor = |before: &Found| before.is_room && room_name(&before.name) == Some("basement");
         let tells_which = |before: &mut Found| before.to == place.from && !is_floor(before);

@@ -1,4 +1,4 @@
-//! Closed word lists by which each word gets its role.
+//! Word lists by which each word gets its role.
 
 crate::data::lists! {
     "words/roles.txt";

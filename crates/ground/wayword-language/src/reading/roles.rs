@@ -1,11 +1,11 @@
-//! What the reader takes the words of a text for.
+//! The roles that the reader gives to the words of a text, and which clauses it understood.
 
-/// A word of a text, and what the reader takes it for.
+/// A word of a text with the role that the reader gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Word {
     /// Its byte range in the text.
     pub span: [usize; 2],
-    /// What the reader takes it for.
+    /// Its role.
     pub role: Role,
     /// Whether shares of understood words count it. Articles, pronouns, auxiliary verbs, conjunctions and prepositions
     /// are not counted.
@@ -13,14 +13,14 @@ pub struct Word {
 }
 
 impl Word {
-    /// Whether the program can act on the word, or knows that it claims nothing.
+    /// Whether the program can act on the word, or knows that it makes no claim.
     #[must_use]
     pub fn is_understood(&self) -> bool {
         self.role != Role::Unknown
     }
 }
 
-/// What a word is for its text.
+/// The role of a word in its text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// A turn: "left" of "turn left".
@@ -31,7 +31,7 @@ pub enum Role {
     Storey,
     /// A part of the name of an object or a room.
     Place,
-    /// A noun that names nothing that a path could lack: "room", "way", "end".
+    /// A noun for something that every path has: "room", "way", "end".
     General,
     /// The side on which a place is, or which of several is meant.
     Side,
@@ -49,17 +49,17 @@ pub enum Role {
     Compass,
     /// A stop.
     Stop,
-    /// What the walker looks at.
+    /// A word about the walker's gaze.
     Facing,
     /// How places lie, or how the walk gets to one.
     Relation,
-    /// What joins statements, or says when something happens.
+    /// A word that joins statements, or gives the time of one.
     Connective,
     /// A denial.
     Denial,
-    /// What is done with an object.
+    /// An action on an object.
     Task,
-    /// How something is done or looks; it claims nothing that a path could contradict.
+    /// How an action is done or how something looks; no path could contradict it.
     Manner,
     /// A word without a meaning of its own.
     Filler,

@@ -1,38 +1,38 @@
-//! What a reading of an instruction holds.
+//! The result of reading an instruction: its events in the order of the text, its closing task, its words and clauses.
 
 use super::{Clause, Word};
 use crate::Language;
 use wayword_core::{Climb, Side};
 
-/// What an instruction says, in the order of its text.
+/// An instruction after the rules of the language went over it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     /// Everything that can be compared with a path.
     pub events: Vec<Event>,
     /// The closing task, where the text ends in one.
     pub task: Option<Task>,
-    /// Every word of the text with what the reader takes it for.
+    /// Every word of the text with its role.
     pub words: Vec<Word>,
     /// The clauses of the text, by the number that events have.
     pub clauses: Vec<Clause>,
-    /// The language of the text. What it says in another language than English is not read.
+    /// The language of the text. Parts in another language than English are not read.
     pub language: Language,
 }
 
-/// One thing that an instruction says.
+/// One statement or command of an instruction: a place, a turn, a climb, a distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
-    /// What it is.
+    /// Its kind and its details.
     pub what: What,
     /// Its byte range in the text.
     pub span: [usize; 2],
     /// The number of its clause, counted over the whole text.
     pub clause: usize,
-    /// Whether the text says not to do it, or that it is not so: "do not turn right".
+    /// Whether the text denies it: "do not turn right".
     pub denied: bool,
 }
 
-/// The kinds of things that instructions say.
+/// The content of an event.
 #[derive(Debug, Clone, PartialEq)]
 pub enum What {
     /// An object, a room, or a word that can mean either ("the stairs").
@@ -102,7 +102,7 @@ pub struct Floor {
     pub number: Option<u32>,
     /// Whether the path comes from there: "from the second floor", "start on level 1".
     pub leaves: bool,
-    /// Whether the text only says that something leads there: "the stairs leading to the second floor".
+    /// Whether the text only mentions a way there: "the stairs leading to the second floor".
     pub aside: bool,
 }
 
@@ -117,19 +117,19 @@ pub struct Place {
     pub is_room: bool,
     /// How it is linked to its sentence.
     pub link: Link,
-    /// The side of the agent on which it is said to be ("on your left").
+    /// The side of the agent that the text gives it ("on your left").
     pub side: Option<Side>,
-    /// The colour that it is said to have.
+    /// The colour that the text gives it.
     pub colour: Option<String>,
     /// Whether it follows a turn that happens at, by or after it ("turn left at the sofa").
     pub tells_turn: bool,
-    /// How the walk goes on by it. `None` where the text only says that something is at it, in it or beside it.
+    /// How the walk goes on by it. `None` where the text only locates something at it, in it or next to it.
     pub going: Option<Going>,
     /// Which one of several it is ("the second door").
     pub ordinal: Option<Ordinal>,
-    /// How many there are, where the text says a number ("two chairs", "a pair of doors").
+    /// How many there are, where the text gives a number ("two chairs", "a pair of doors").
     pub count: Option<u32>,
-    /// Whether the text says that there are several ("two chairs", "pass couches").
+    /// Whether the text names several ("two chairs", "pass couches").
     pub several: bool,
 }
 
@@ -176,7 +176,7 @@ pub enum Link {
     Goal,
     /// Something is there, or the agent is: "in", "at", "from", "of".
     Within,
-    /// Something lies beside it, and the agent need not go there: "next to", "across from", "with".
+    /// Something is next to it, and the agent need not go there: "next to", "across from", "with".
     Beside,
     /// The agent goes past or through it: "past", "down".
     Along,
@@ -192,7 +192,7 @@ pub struct Task {
 }
 
 impl Reading {
-    /// The reading without what the text denies: only what it claims.
+    /// The reading without the denied events: only the text's claims.
     #[must_use]
     pub fn claims(mut self) -> Self {
         if let Some(task) = &mut self.task {

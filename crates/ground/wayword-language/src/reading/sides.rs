@@ -1,9 +1,9 @@
-//! On which side of the walker a place is said to be.
+//! Finds the side of the walker on which a text locates a place.
 
 use super::{tokens::Tokens, vocabulary as v};
 use wayword_core::Side;
 
-/// How far before a place its side may be told, words.
+/// How far before a place its side may be, words.
 const REACH: usize = 10;
 
 /// The side that follows a place ("on your left", "that is on the far right", but not "to the right of"), and the token
@@ -26,7 +26,7 @@ pub(super) fn after(tokens: Tokens<'_>, to: usize) -> (Option<Side>, usize) {
     if word(end) == "of" { (None, to) } else { (Some(side), end) }
 }
 
-/// The side that is told before a place: "on your left is the sofa", "to the right you will see a sofa".
+/// The side that is named before a place: "on your left is the sofa", "to the right you will see a sofa".
 pub(super) fn before(tokens: Tokens<'_>, from: usize) -> Option<Side> {
     let word = |at: usize| tokens.word(at);
     let may = |word: &str| {
@@ -78,7 +78,7 @@ mod tests {
     use wayword_core::Side;
 
     #[test]
-    fn a_side_is_told_before_or_behind_a_place() {
+    fn sides_are_found_before_and_behind_a_place() {
         for text in [
             "pass the sofa on your left",
             "the sofa is on the left",

@@ -1,11 +1,11 @@
-//! The plain form of a verb.
+//! Finds the plain form of a verb: "walk" for "walks", "walked" and "walking".
 
 /// Whether a word is a verb of a list, in any of its regular forms: "walk", "walks", "walked", "walking".
 pub(super) fn is_form_of(word: &str, list: &[&str]) -> bool {
     stems(word).any(|stem| list.contains(&stem.as_str()))
 }
 
-/// What the plain form of a word may be, if it is a verb. Some of these are no words.
+/// The candidates for the plain form of a word, if it is a verb. Some of them are no words.
 fn stems(word: &str) -> impl Iterator<Item = String> {
     let cut = |end: &str| word.strip_suffix(end).filter(|stem| stem.len() > 1);
     let y = cut("ies").or(cut("ied")).map(|stem| format!("{stem}y"));

@@ -1,4 +1,4 @@
-//! What a text tells a walker to do, step by step. A step is a clause, or a part of one with at most one turn.
+//! Divides a text into the walker's steps. A step is a clause, or a part of one with at most one turn.
 
 mod relation;
 
@@ -30,25 +30,25 @@ pub struct Step {
     pub is_slight: bool,
     /// Its climb: a flight of stairs, or a few steps.
     pub climb: Option<Climb>,
-    /// The storey on which it says that something is: "the kitchen on level 2".
+    /// The storey that it mentions as a location: "the kitchen on level 2".
     pub floor: Option<Floor>,
     /// Whether something lies up or down the stairs: "the bedroom upstairs".
     pub storey: Option<Climb>,
-    /// Whether it says to stop or to wait.
+    /// Whether it is a command to stop or to wait.
     pub stops: bool,
-    /// Whether it says to go straight on.
+    /// Whether it is a command to go straight on.
     pub is_straight: bool,
-    /// Whether it only says when something happens: "until you reach the sofa", "once you are out".
+    /// Whether it only gives the time of something: "until you reach the sofa", "once you are out".
     pub is_condition: bool,
     /// Whether it speaks of the end of something: "at the end of the hallway".
     pub at_end: bool,
-    /// What it has to do with doors.
+    /// Its relation to doors.
     pub door: Door,
-    /// What it has to do with stairs.
+    /// Its relation to stairs.
     pub stairs: Stairs,
     /// Whether it leads outside the house, and names no room there.
     pub is_outdoors: bool,
-    /// The side on which something is that the step names, and how the step has to do with it: "the door on your left".
+    /// A side on which the step locates a thing, and how the step relates to that thing: "the door on your left".
     pub side: Option<(Relation, Side)>,
     /// The landmarks and rooms that it names.
     pub places: Vec<Told>,
@@ -61,14 +61,14 @@ pub struct Step {
 pub struct Told {
     /// Its event in the reading.
     pub event: usize,
-    /// How the step has to do with it.
+    /// How the step relates to it.
     pub relation: Relation,
 }
 
-/// What a step has to do with doors.
+/// How a step relates to doors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Door {
-    /// Nothing.
+    /// It has no door.
     None,
     /// It leads from one room to another.
     Implied,
@@ -78,10 +78,10 @@ pub enum Door {
     Through,
 }
 
-/// What a step has to do with stairs.
+/// How a step relates to stairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stairs {
-    /// Nothing.
+    /// It has no stairs.
     None,
     /// It names them.
     Named,
@@ -91,7 +91,7 @@ pub enum Stairs {
     Bottom,
 }
 
-/// The steps of a text that was read. What the text denies is no part of them.
+/// The steps of a text that was read. Denied events are no part of them.
 #[must_use]
 pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
     let tokens = text::tokens(text);
@@ -109,7 +109,7 @@ pub fn steps(text: &str, reading: &Reading) -> Vec<Step> {
     steps
 }
 
-/// How far behind its verb the side of a turn may stand, words.
+/// How far behind its verb the side of a turn may be, words.
 const TURN_REACH: usize = 5;
 
 /// Cuts the tokens at clauses, before a condition, and before a second turn.
@@ -250,7 +250,7 @@ impl Builder<'_> {
     }
 }
 
-/// What a step that names a place has to do with doors.
+/// How a step that names this place relates to doors.
 fn door(name: &str, relation: Relation) -> Door {
     let is_door = name.split(' ').any(|word| DOOR_WORDS.contains(&word)) || name == "room";
     match relation {
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_tells_doors_stairs_and_sides() {
+    fn steps_have_doors_stairs_and_sides() {
         let step = |text: &str| told(text).remove(0).1;
         assert_eq!(step("Go through the door on your left.").door, Door::Through);
         assert_eq!(step("Go through the door on your left.").side.map(|side| side.1), Some(Side::Left));
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_denied_is_no_part_of_a_step() {
+    fn denied_words_are_no_part_of_a_step() {
         let step = |text: &str| told(text).remove(0).1;
         let denied = step("Do not turn left.");
         assert_eq!((denied.turn, denied.side), (None, None));

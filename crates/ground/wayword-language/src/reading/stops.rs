@@ -1,9 +1,9 @@
-//! Where the walk stops, and what the walker looks at there.
+//! Finds where a walk stops, and which places the walker faces there.
 
 use super::{Event, What, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
 
-/// The commands of a text to stop, and what it says of what the walker faces.
+/// The commands of a text to stop, and its words about facing something.
 pub(super) fn stops_and_facing(tokens: Tokens<'_>, clauses: &[usize]) -> Vec<Event> {
     let text = Text { tokens };
     let event = |what: What, at: usize| Event { what, span: tokens.span(at, at), clause: clauses[at], denied: false };
@@ -27,7 +27,7 @@ impl<'a> Text<'a> {
         self.tokens.before(at)
     }
 
-    /// Whether a token says that the walk stops.
+    /// Whether a token ends the walk.
     fn stops(&self, at: usize) -> bool {
         let next = self.word(at + 1);
         let here = || !self.tokens.is_word(at + 1) || v::AFTER_STOP.contains(&next);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stop_is_told_in_many_ways() {
+    fn stops_are_found_in_many_wordings() {
         for text in [
             "Stop at the sink.",
             "Walk to the sink and wait there.",
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_walker_faces_is_told_from_what_a_thing_faces() {
+    fn faces_ignores_things_that_face_something() {
         for (text, away) in [
             ("Turn to face the window.", false),
             ("Face the window.", false),

@@ -1,4 +1,4 @@
-//! The closing task.
+//! Finds the closing task: "and water the plant on the windowsill" at the end of an instruction.
 
 use super::{Event, Task, What, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{is_room, is_thing, normal_word};
@@ -43,13 +43,13 @@ pub(super) fn verb_at(tokens: Tokens<'_>, at: usize) -> Option<usize> {
     (!no_verb).then_some(at)
 }
 
-/// Whether a word that can name a thing is what is done here: "switch on the lamp", "vacuum the rug", "fan the fire".
+/// Whether a word that can name a thing is a verb here: "switch on the lamp", "vacuum the rug", "fan the fire".
 pub(super) fn is_done(tokens: Tokens<'_>, at: usize) -> bool {
     let (word, next, before) = (tokens.word(at), tokens.word(at + 1), tokens.before(at));
     let begins = at == 0 || !tokens.is_word(at - 1);
     let joined = v::ADVERBS.contains(&before) || matches!(before, "and" | "or");
     let object = matches!(next, "the" | "a" | "an" | "your" | "my" | "our" | "all" | "any" | "some" | "me" | "both");
-    // "Past the sofa and chair on the left": only some verbs have such a word behind them.
+    // "Past the sofa and chair on the left": only some verbs have one of these words behind them.
     let particle = matches!(
         (word, next),
         ("switch" | "light" | "shower", "on" | "off") | ("box" | "board" | "light" | "cover" | "hook", "up")
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_is_no_thing() {
+    fn a_verb_that_can_name_a_thing_is_no_place() {
         for (text, wanted) in [
             ("Switch on the lamp", &["lamp"][..]),
             ("Go to the kitchen and switch off the light", &["kitchen", "light"]),
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thing_stays_one() {
+    fn things_that_look_like_verbs_stay_places() {
         for (text, wanted) in [
             ("Press the switch on the wall", &["switch", "wall"][..]),
             ("Pass the sofa and chair on the left", &["sofa", "chair"]),

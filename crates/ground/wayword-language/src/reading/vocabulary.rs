@@ -1,4 +1,4 @@
-//! Closed word lists that steer the reading of an instruction.
+//! Word lists that steer the reading of an instruction.
 
 crate::data::lists! {
     "words/reading.txt";

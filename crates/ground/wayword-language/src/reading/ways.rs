@@ -1,14 +1,14 @@
-//! How the walk goes on by a place: out of it, into it, through it, past it, to it.
+//! Finds how a walk goes by a place: out of it, into it, through it, past it, to it.
 
 use super::{Going, role_words as r, tokens::Tokens, vocabulary as v};
 use crate::lexicon::{Class, is_room, normal_word, thing};
 
-/// How far before a place the word that decides may stand, words.
+/// How far before a place the word that decides may be, words.
 const REACH: usize = 7;
-/// How far before that the words may begin that say that it is a moment ("when you get to"), words.
+/// How far before that the words for a moment may begin ("when you get to"), words.
 const MORE: usize = 4;
 
-/// How the walk goes on by the place of that name that begins at a token; `None` where no word says that it does.
+/// How the walk goes on by the place of that name that begins at a token; `None` where it does not go by it.
 pub(super) fn going(tokens: Tokens<'_>, clauses: &[usize], from: usize, place: &str) -> Option<Going> {
     let clause = *clauses.get(from)?;
     let in_clause = |at: &usize| tokens.is_word(*at) && clauses[*at] == clause;
@@ -51,7 +51,7 @@ impl<'a> Text<'a> {
         moves_it || (r::TASKS.contains(&word) && !walks && word != "use")
     }
 
-    /// The nearest of these tokens that decides, and what it says.
+    /// The nearest of these tokens that decides, and its decision.
     fn decided(&self, mut window: impl Iterator<Item = usize>) -> Option<(usize, Option<Going>)> {
         while let Some(at) = window.next() {
             if self.word(at) == "of" && v::PARTS.contains(&self.before(at)) {
@@ -75,7 +75,7 @@ impl<'a> Text<'a> {
         None
     }
 
-    /// What a verb says of its object: "exit the kitchen", "passing the sofa".
+    /// The motion that a verb expresses for its object: "exit the kitchen", "passing the sofa".
     fn verb(&self, at: usize) -> Option<Going> {
         // "The exit door", "a pass": a noun.
         if v::DETERMINERS.contains(&self.before(at)) {
@@ -94,11 +94,11 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// What a preposition says.
+    /// The motion that a preposition expresses.
     fn preposition(&self, at: usize) -> Option<Going> {
         let before = self.before(at);
         if matches!(before, "leads" | "leading" | "lead") {
-            // "The door that leads into the kitchen": what it leads to.
+            // "The door that leads into the kitchen": it names the goal of the door.
             return None;
         }
         let goes = || v::GOING.contains(&before) || v::CLIMBING.contains(&before);
@@ -151,7 +151,7 @@ impl<'a> Text<'a> {
         thing(&normal_word(word)).is_some_and(|thing| thing.class == Class::Stairs)
     }
 
-    /// "The door to the kitchen": what the door leads to.
+    /// "The door to the kitchen": it names the goal of the door.
     fn is_doorway(&self, word: &str) -> bool {
         let name = normal_word(word);
         thing(&name).is_some_and(|thing| thing.class == Class::Door || matches!(thing.name, "doorway" | "arch"))
@@ -159,7 +159,7 @@ impl<'a> Text<'a> {
 
     /// Whether words before a token say that this is a moment: "until you", "once", "as soon as you".
     fn tells_when(&self, at: usize) -> bool {
-        // "Until you get to two chairs in front of a shelf": that of the chairs, and not of the shelf.
+        // "Until you get to two chairs in front of a shelf": the moment is at the chairs, and not at the shelf.
         let mut before = (self.first..at).rev().map(|at| self.word(at)).take_while(|word| !self.is_noun(word));
         before.any(|word| matches!(word, "until" | "till" | "when" | "once" | "soon"))
     }
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_through_a_place_are_told_apart() {
+    fn going_separates_the_ways_by_a_place() {
         for (going, texts) in [
             (Going::Leaving, &["exit the kitchen", "leave the big kitchen", "walk out of the kitchen"][..]),
             (Going::Leaving, &["coming from the kitchen", "walk away from the sofa", "step off the rug"]),
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_tells_where_something_is_is_no_way() {
+    fn locating_words_are_no_way() {
         for text in [
             "stop in the kitchen",
             "wait by the sofa",

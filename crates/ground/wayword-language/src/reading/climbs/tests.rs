@@ -1,3 +1,5 @@
+//! Tests of reading climbs and storeys, on wordings of people.
+
 use super::*;
 use crate::reading::read;
 use std::collections::BTreeSet;
@@ -8,7 +10,7 @@ fn told(text: &str) -> Vec<What> {
 }
 
 #[test]
-fn commands_to_climb_are_told_from_places_up_there() {
+fn commands_to_climb_differ_from_places_up_there() {
     for text in [
         "Go upstairs.",
         "Walk back upstairs to the bedroom.",
@@ -79,7 +81,7 @@ fn commands_to_climb_are_told_from_places_up_there() {
 }
 
 #[test]
-fn floors_have_numbers_and_a_way_to_be_told() {
+fn floors_have_numbers_and_are_left_or_mentioned_aside() {
     let floor = |text: &str| match told(text).pop() {
         Some(What::Floor(floor)) => (floor.number, floor.leaves),
         other => panic!("{text}: {other:?}"),

@@ -1,17 +1,17 @@
-//! How a step has to do with a place.
+//! How a step relates to a place that it names: into it, past it, near it.
 
 use crate::{
     reading::{Going, Place},
     text::Token,
 };
 
-/// How far before a place the word may stand that says it, words.
+/// How far before a place the word for the relation may be, words.
 const REACH: usize = 7;
 
-/// How a step has to do with a place that it names.
+/// How a step relates to a place that it names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Relation {
-    /// No word says it.
+    /// No word expresses a relation.
     Plain,
     /// The step leaves it.
     OutOf,
@@ -29,7 +29,7 @@ pub enum Relation {
     Along,
     /// The step is at it.
     At,
-    /// The step is beside or near it.
+    /// The step is next to it or near it.
     Near,
     /// The step is in front of it.
     Before,
@@ -78,7 +78,7 @@ impl Relation {
         }
     }
 
-    /// The relation by the last word before a place that says one.
+    /// The relation by the last word before a place that expresses one.
     fn said(words: &[Token], earlier: Option<(usize, Self)>) -> Self {
         let from = earlier.map_or(0, |(at, _)| at + 1).max(words.len().saturating_sub(REACH));
         let mut is_joined = false;

@@ -1,11 +1,12 @@
-//! Turns that are told more than once: "turn right twice", "take two lefts".
+//! Finds turns that are made more than once: "turn right twice", "take two lefts".
 
 use crate::reading::{numbers::cardinal, tokens::Tokens, vocabulary as v};
 
-/// Most turns that one word tells. Whoever turns more often goes in circles.
+/// Most turns that one word means. More of them would lead in circles.
 const MOST: usize = 4;
 
-/// How many turns a turn stands for besides itself, and the tokens that say so: its own are `first` to `last`.
+/// How many further turns the words give, and the tokens with their number. The turn's own tokens are `first` to
+/// `last`.
 pub(super) fn more(tokens: Tokens<'_>, first: usize, last: usize) -> (usize, (usize, usize)) {
     let next = last + 1 + usize::from(matches!(tokens.word(last + 1), "turn" | "turns"));
     let (times, told) = match (tokens.word(next), tokens.word(next + 1)) {
@@ -29,7 +30,7 @@ fn number_before(tokens: Tokens<'_>, first: usize, last: usize) -> usize {
     if several { numbers.find_map(cardinal).map_or(1, |number| number as usize) } else { 1 }
 }
 
-/// Whether a word before a side may count turns, or stands between such a word and the side.
+/// Whether a word before a side may count turns, or may come between a number and the side.
 pub(super) fn is_count(word: &str) -> bool {
     cardinal(word).is_some() || matches!(word, "quick" | "more" | "immediate" | "sharp" | "slight" | "consecutive")
 }

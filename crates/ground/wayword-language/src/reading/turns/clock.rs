@@ -1,10 +1,10 @@
-//! Turns that are told as a clock does: "turn clockwise", "turn to your 3 o'clock".
+//! Finds turns by the clock: "turn clockwise", "turn to your 3 o'clock".
 
 use crate::reading::{numbers::cardinal, tokens::Tokens, vocabulary as v};
 use wayword_core::Side;
 
-/// The side of the turn that ends at a token, its verb and its last token. `from` is where the words begin that may stand
-/// between the verb and the token.
+/// The side of the turn that ends at a token, its verb and its last token. `from` is the first of the words that may
+/// come between the verb and the token.
 pub(super) fn turn(tokens: Tokens<'_>, from: usize, at: usize) -> Option<(Side, Option<usize>, usize)> {
     let spins = |verb: &usize| v::SPINNING.contains(&tokens.word(*verb));
     let (side, last) = match tokens.word(at) {
@@ -28,7 +28,7 @@ pub(super) fn turn(tokens: Tokens<'_>, from: usize, at: usize) -> Option<(Side, 
     Some((side, Some(verb), last))
 }
 
-/// How many words right before a token may stand between a verb and it.
+/// How many words right before a token may come between a verb and it.
 fn gap(tokens: Tokens<'_>, at: usize) -> usize {
     const MOST: usize = 4;
     let is_number = |word: &str| word.parse::<f64>().is_ok();
@@ -38,7 +38,7 @@ fn gap(tokens: Tokens<'_>, at: usize) -> usize {
     (0..at).rev().take(MOST).take_while(|at| may(tokens.word(*at))).count()
 }
 
-/// The side on which one looks after such a turn; `None` after a full one.
+/// The side on which one looks after a turn of that many degrees; `None` after a full one.
 fn about(degrees: f64, against: bool) -> Option<Side> {
     match (degrees, against) {
         (150.0..210.0, _) => Some(Side::Behind),

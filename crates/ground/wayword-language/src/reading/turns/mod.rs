@@ -1,4 +1,5 @@
-//! Turn words.
+//! Finds the turns of a text. "Left" is a turn in "go left", but not in "the left door", so the words around a side
+//! decide.
 
 mod again;
 mod clock;
@@ -158,7 +159,7 @@ impl<'a> Text<'a> {
             || (matches!(word, "round" | "rounding") && between.any(|at| self.word(at) == "corner"))
     }
 
-    /// "The left wall", "left of the sofa": the side says which thing is meant, or where it is.
+    /// "The left wall", "left of the sofa": the side distinguishes a thing, or locates one.
     fn tells_a_place(&self, at: usize, turning: Option<usize>) -> bool {
         let after = self.word(at + 1);
         if matches!(after, "of" | "side" | "hand" | "wall" | "corner" | "most") {

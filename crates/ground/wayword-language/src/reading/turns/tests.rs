@@ -1,3 +1,5 @@
+//! Tests of reading turns, on wordings of people.
+
 use crate::reading::{What, read};
 use std::collections::BTreeSet;
 use wayword_core::Side;
@@ -8,7 +10,7 @@ fn turns(text: &str) -> Vec<Side> {
 }
 
 #[test]
-fn people_tell_a_turn_in_many_ways() {
+fn turns_are_found_in_many_wordings() {
     for text in [
         "Make a 90 degree left.",
         "Turn 90 degrees left.",
@@ -63,7 +65,7 @@ fn people_tell_a_turn_in_many_ways() {
 }
 
 #[test]
-fn people_tell_a_turn_around_in_many_ways() {
+fn turns_around_are_found_in_many_wordings() {
     for text in [
         "Turn around.",
         "Turn all the way around.",
@@ -106,7 +108,7 @@ fn people_tell_a_turn_around_in_many_ways() {
 }
 
 #[test]
-fn a_turn_may_be_told_more_than_once() {
+fn repeated_turns_are_counted() {
     use Side::{Left, Right};
     for (text, sides) in [
         ("Turn right twice.", &[Right, Right][..]),
@@ -123,7 +125,7 @@ fn a_turn_may_be_told_more_than_once() {
 }
 
 #[test]
-fn a_side_that_tells_a_place_is_no_turn() {
+fn a_side_of_a_place_is_no_turn() {
     for text in [
         "Walk through the door on the right.",
         "Use the right-hand door.",
