@@ -1,6 +1,6 @@
-//! A service that plays models, for trying a run with models where no model is available. It speaks as
-//! OpenAI-compatible servers do, and its models are `server/words` and `server/eye`. It does not see: what it says of a
-//! picture is made up from the picture's bytes.
+//! A scripted model service, for trying a run with models where no model is available. It answers as OpenAI-compatible
+//! servers do, and its models are `server/words` and `server/eye`. It does not look at pictures: it invents a description
+//! from the picture's bytes.
 //!
 //! `cargo run -p wayword-testkit --example provider` prints the address for `--base-url` and serves until it is
 //! interrupted.

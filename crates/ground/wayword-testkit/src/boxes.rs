@@ -1,4 +1,5 @@
-//! REVERIE's boxes: the objects near each viewpoint, projected into the simulator's 36 views.
+//! The box files of REVERIE (`BBox/SCAN_VIEWPOINT.json`): the objects near each viewpoint, projected into the 36 views of the
+//! Matterport3D simulator (12 headings at three elevations).
 
 use crate::plan::{self, Object, VIEWPOINTS, viewpoint_id};
 use glam::DVec3;
@@ -12,7 +13,7 @@ const HEIGHT_PX: f64 = 480.0;
 /// Boxes smaller than this, pixels, are not annotated.
 const MIN_SIDE_PX: f64 = 4.0;
 
-/// The contents of `SCAN_VIEWPOINT.json`.
+/// The contents of `SCAN_VIEWPOINT.json` for the viewpoint with this index.
 pub(crate) fn file(index: usize) -> Value {
     let viewpoint = &VIEWPOINTS[index];
     let eye = plan::eye(viewpoint);

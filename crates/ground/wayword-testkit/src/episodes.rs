@@ -1,4 +1,5 @@
-//! Paths through the building, with made-up instructions in the manner of REVERIE and R2R.
+//! Ten episodes in the made-up building: paths with instructions in the style of REVERIE and R2R, and the two JSON files that
+//! hold them.
 
 use crate::plan::{SCAN, viewpoint_id};
 use serde_json::{Value, json};
@@ -8,9 +9,9 @@ struct Episode {
     /// Radians.
     heading: f64,
     object: usize,
-    /// Short, with a task.
+    /// Short instructions that end in a task, as REVERIE has them.
     reverie: [&'static str; 2],
-    /// Step by step.
+    /// Step-by-step instructions, as R2R has them.
     r2r: [&'static str; 2],
 }
 

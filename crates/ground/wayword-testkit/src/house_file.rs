@@ -1,4 +1,5 @@
-//! The `.house` file: levels, regions, panoramas, objects and their categories.
+//! Writes Matterport3D's `.house` file: levels, regions, panoramas, objects and their categories, a line each. Fields that our
+//! reader does not use are zero.
 
 use crate::plan::{self, OBJECTS, ROOMS, SCAN, VIEWPOINTS, viewpoint_id};
 

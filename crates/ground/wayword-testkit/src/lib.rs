@@ -1,9 +1,10 @@
 //! A small made-up building in the file formats of Matterport3D, REVERIE and R2R, for tests: two storeys with stairs,
-//! nine rooms, 14 viewpoints, 42 objects (some share a name), ten paths with instructions. Nothing of it is taken from
-//! a dataset.
+//! nine rooms, 14 viewpoints, 42 objects (some share a name), ten paths with instructions. It was invented for the tests
+//! and contains no data of a dataset, so it can be published.
 //!
-//! [`provider`] has models behind HTTP that answer by script, with every fault that services have; [`PlayedDetector`] finds
-//! things by script; [`Postgres`] starts a server of PostgreSQL. [`documents`] has the commands that the repository's documents give their readers to type.
+//! There are stand-ins for services as well: [`provider`] serves models over HTTP that answer from scripts and fail in every
+//! way that real services fail; [`PlayedDetector`] detects things by script; [`Postgres`] starts a PostgreSQL server.
+//! [`documents`] extracts the commands that the repository's documents ask their readers to type.
 
 mod boxes;
 pub mod documents;
@@ -14,6 +15,7 @@ mod plan;
 mod played_detector;
 mod postgres;
 pub mod provider;
+pub mod resources;
 
 use serde_json::{Value, json};
 use std::{fs, io, path::Path};
@@ -45,8 +47,8 @@ pub fn write_building(data: &Path) -> io::Result<()> {
     write(&data.join("r2r"), "R2R_val_seen.json", episodes::r2r().to_string())
 }
 
-/// Adds photographs: a skybox per viewpoint (`VIEWPOINT_skybox_small.jpg`, six faces of 64 pixels), whose walls have
-/// [`wall_colour`]. Call it after [`write_building`].
+/// Adds photographs: a skybox per viewpoint (`VIEWPOINT_skybox_small.jpg`, six faces of 64 pixels) with walls in the
+/// colours of [`wall_colour`]. Call it after [`write_building`].
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -54,7 +56,8 @@ pub fn write_skyboxes(data: &Path) -> io::Result<()> {
     write_skyboxes_marked(data, |_| 0)
 }
 
-/// The same, but no two viewpoints look the same, for tests that tell views apart by their pictures.
+/// Adds photographs as [`write_skyboxes`] does, but shaded differently at each viewpoint, for tests that distinguish
+/// viewpoints by their pictures.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -1,16 +1,17 @@
-//! The building: rooms, viewpoints, objects. Metres; x to the east, y to the north, z up.
+//! The floor plan of the made-up building: rooms, viewpoints, edges and objects. Coordinates are metres; x points east, y north,
+//! z up. All other files of this crate derive from these tables.
 
 use glam::DVec3;
 
-/// Its name as a scan.
+/// The name of the building as a Matterport3D scan.
 pub const SCAN: &str = "madeUpHouse";
 
-/// The camera above the floor.
+/// Height of the camera above the floor, metres.
 pub(crate) const CAMERA_HEIGHT_M: f64 = 1.5;
 const UPPER_M: f64 = 2.9;
 
 pub(crate) struct Room {
-    /// Matterport3D's letter.
+    /// Matterport3D's letter for the kind of room, as `k` for a kitchen.
     pub(crate) letter: char,
     /// The storey: 0 is the lower one, 1 the upper.
     pub(crate) level: usize,
@@ -147,12 +148,12 @@ pub fn viewpoint_id(index: usize) -> String {
     format!("{mixed:032x}")
 }
 
-/// The camera of a viewpoint.
+/// Where the camera of a viewpoint is.
 pub(crate) fn eye(viewpoint: &Viewpoint) -> DVec3 {
     DVec3::new(viewpoint.x_m, viewpoint.y_m, viewpoint.floor_m + CAMERA_HEIGHT_M)
 }
 
-/// Height of a storey's floor.
+/// Height of a storey's floor, metres.
 pub(crate) fn floor_m(level: usize) -> f64 {
     if level == 0 { 0.0 } else { UPPER_M }
 }

@@ -1,28 +1,29 @@
-//! A detector whose finds and misses are drawn by the labels of a view: with a recall, with false alarms, and with misses
-//! that may repeat with a thing.
+//! A stand-in for a detector network. It looks at the ground-truth labels of a view and draws at random, from a seed, which
+//! of them it finds and which absent things it reports. The test sets its recall and its share of false alarms.
 
 use rand::Rng;
 use wayword_core::{Detector, Found, Label, ModelError, Scoring, View, rng};
 
-/// Plays a detector.
+/// A detector that reports labelled things with a given recall and absent things with a given probability.
 #[derive(Debug, Clone, Copy)]
 pub struct PlayedDetector {
     /// Whether two names mean the same.
     pub same: fn(&str, &str) -> bool,
-    /// The share of what a view shows that it finds.
+    /// The share of the labelled things in a view that it finds, 0 to 1.
     pub recall: f64,
-    /// The share of phrases, of those that nothing at a place is called by, that it finds in the views from there.
+    /// The share of false alarms, 0 to 1: how often it reports a phrase although no label in the view has that name.
     pub alarms: f64,
-    /// Whether it misses a thing from everywhere, once it misses it. Else each view is drawn by itself.
+    /// Whether a miss is drawn once per thing, so that a missed thing is missed from every place. If false, a miss is drawn
+    /// anew for each place.
     pub repeats: bool,
-    /// Seed of what is drawn.
+    /// Seed of all draws.
     pub seed: u64,
 }
 
-/// The score of whatever it finds.
+/// The score of every box that it reports.
 const SCORE: f32 = 0.8;
 
-/// A box around the middle of a label, as a share of the picture's width to each side, and twice that of its height.
+/// Half the width of a reported box as a share of the picture's width. Half its height is twice this share of the height.
 const HALF: f64 = 0.05;
 
 impl PlayedDetector {
@@ -48,7 +49,7 @@ impl PlayedDetector {
     }
 }
 
-/// The place of the eye, to the centimetre.
+/// The position of the camera as text, rounded to the centimetre. It is part of the seed of a draw.
 fn place(view: &View) -> String {
     view.pose.position.to_array().map(|metres| format!("{metres:.2}")).join(" ")
 }
@@ -99,7 +100,7 @@ mod tests {
         View::new(Pose::level(DVec3::new(at, 0.0, 1.5), Heading::NORTH), 1.5, None, Some(truth))
     }
 
-    /// The shares of places at which the sofa that is there, and the piano that is not, are found.
+    /// The shares of places where the detector reports the sofa, which every view has, and the piano, which none has.
     fn shares(detector: PlayedDetector) -> (f64, f64) {
         let views: Vec<View> = (0..400).map(|at| view(f64::from(at), &["sofa"])).collect();
         let found = detector.detect(&views.iter().collect::<Vec<_>>(), &["sofa", "piano"]);
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_and_alarms_come_as_often_as_asked_for() {
+    fn detect_finds_and_alarms_at_the_given_shares() {
         let played = PlayedDetector { same: |a, b| a == b, recall: 0.8, alarms: 0.1, repeats: false, seed: 1 };
         let (found, alarms) = shares(played);
         assert!((found - 0.8).abs() < 0.07 && (alarms - 0.1).abs() < 0.05, "{found} {alarms}");
@@ -118,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_lies_where_its_label_does() {
+    fn detect_puts_the_box_where_the_label_is() {
         let played = PlayedDetector { same: |a, b| a == b, recall: 1.0, alarms: 0.0, repeats: false, seed: 1 };
         let shown = view(0.0, &["sofa"]);
         let found = played.detect(&[&shown], &["sofa"])[0].as_ref().unwrap()[0][0];

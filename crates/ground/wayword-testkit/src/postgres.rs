@@ -1,4 +1,5 @@
-//! A server of PostgreSQL that a test starts for itself, with the programs that are installed on this machine.
+//! A PostgreSQL server that a test starts for itself, with the programs that are installed on this machine. Tests skip
+//! themselves where none are installed.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test whose server cannot be started fails")]
 
@@ -16,12 +17,12 @@ use tempfile::TempDir;
 /// The user of the server.
 const USER: &str = "postgres";
 
-/// A running server. It listens on a socket in its own folder alone, asks for no password, and is stopped when this is
-/// dropped.
+/// A running server. It listens only on a socket in its own temporary folder, asks for no password, and stops when this
+/// value is dropped.
 #[derive(Debug)]
 pub struct Postgres {
     programs: PathBuf,
-    /// The user under whom the server runs, if this program runs as root: the server refuses to.
+    /// The user that the server runs as if this program runs as root. PostgreSQL refuses to run as root.
     as_user: Option<String>,
     folder: TempDir,
 }
@@ -60,7 +61,7 @@ impl Postgres {
         Some(server)
     }
 
-    /// How clients name a new, empty database.
+    /// Makes a new, empty database and returns its URL for clients.
     ///
     /// # Panics
     /// When the server cannot make it.
@@ -72,13 +73,13 @@ impl Postgres {
         self.url_of(USER, &name)
     }
 
-    /// How clients name the database that every server has.
+    /// The URL of the database `postgres`, which every server has.
     #[must_use]
     pub fn url(&self) -> String {
         self.url_of(USER, "postgres")
     }
 
-    /// How a client of a role names a database.
+    /// The URL with which a client connects to a database as a role.
     #[must_use]
     pub fn url_of(&self, role: &str, database: &str) -> String {
         format!("postgresql://{role}@/{database}?host={}", self.folder.path().display())
@@ -96,11 +97,11 @@ impl Postgres {
     /// Stops the server as a crash would.
     pub fn stop(&self) {
         let mut stop = self.program("pg_ctl");
-        // If it does not run, there is nothing to stop.
+        // The call fails if the server does not run, which is fine here.
         let _ = stop.args(["-m", "immediate", "-w", "stop", "-D"]).arg(self.data()).output();
     }
 
-    /// Starts the server that was stopped.
+    /// Starts the server again after [`Postgres::stop`].
     ///
     /// # Panics
     /// When it cannot be started.
@@ -139,7 +140,7 @@ impl Drop for Postgres {
     }
 }
 
-/// The folder of PostgreSQL's programs.
+/// The folder of PostgreSQL's programs: the newest version of Debian's, else one on the `PATH`.
 fn programs() -> Option<PathBuf> {
     let path = env::var_os("PATH").unwrap_or_default();
     let mut debian: Vec<PathBuf> = fs::read_dir("/usr/lib/postgresql")
@@ -163,7 +164,7 @@ fn version(folder: &Path) -> u32 {
     name.and_then(|name| name.parse().ok()).unwrap_or(0)
 }
 
-/// The user under whom the server has to run, if this program runs as root.
+/// The user that the server has to run as; `None` unless this program runs as root.
 fn other_user() -> Option<String> {
     let id = |of: &[&str]| Command::new("id").args(of).output().ok().filter(|output| output.status.success());
     let is_root = id(&["-u"]).is_some_and(|output| output.stdout.trim_ascii() == b"0");
@@ -172,7 +173,8 @@ fn other_user() -> Option<String> {
 }
 
 fn done(command: &mut Command) -> Output {
-    // A server keeps the pipes of its parent open, so only what fails is read.
+    // The server inherits the pipes and keeps them open. `pg_ctl start` therefore runs with a log file and without stdout;
+    // otherwise `output` would wait until the server ends.
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{command:?}: {said}");
@@ -184,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_newest_of_debians_versions_is_taken() {
+    fn newest_debian_version_sorts_last() {
         let path = |version: &str| PathBuf::from(format!("/usr/lib/postgresql/{version}/bin"));
         assert!(version(&path("17")) > version(&path("9.6")));
         assert!(version(&path("17")) > version(&path("15")));

@@ -1,5 +1,6 @@
-//! The commands that documents give their readers to type. They are read from Markdown: from fenced blocks of shell,
-//! and from code spans within the text. For tests that check the documents against the real command line.
+//! Extracts the commands that our documents ask readers to type. It reads Markdown: fenced blocks of shell, and code spans
+//! within paragraphs. A test runs the commands through the real command-line parser, so that no document shows a command
+//! that does not exist.
 
 mod shell;
 
@@ -13,18 +14,18 @@ use std::{
 pub struct Documented {
     /// The document, relative to the repository's root, and the line on which the command begins, from 1.
     pub place: String,
-    /// The program: `wayword` or `wayword-measure`, however the document starts it.
+    /// The program: `wayword`, `wayword-measure` or `wayword-trials`, however the document starts it.
     pub program: String,
     /// Variables that are set for this command only.
     pub variables: Vec<(String, String)>,
     /// Its arguments.
     pub args: Vec<String>,
-    /// Whether it is within the text, where `wayword check` may be a name and not a command to type.
+    /// Whether it is a code span within a paragraph. There `wayword check` may be a name instead of a command to type.
     pub is_within_text: bool,
 }
 
 /// Programs of this repository that documents describe.
-const PROGRAMS: [&str; 2] = ["wayword", "wayword-measure"];
+const PROGRAMS: [&str; 3] = ["wayword", "wayword-measure", "wayword-trials"];
 /// The names of fenced blocks of shell. Blocks without a name are shell as well.
 const SHELL: [&str; 5] = ["", "sh", "bash", "console", "shell"];
 
@@ -76,7 +77,7 @@ fn program_of(words: &[String]) -> Option<(String, Vec<String>)> {
     Some((package.map_or("wayword", String::as_str).to_owned(), args[1..].to_vec()))
 }
 
-/// Text that may hold shell commands.
+/// A part of a document that may contain shell commands: the body of a fenced block, or one code span.
 struct Piece {
     /// Line on which it begins, from 1.
     line: usize,
@@ -96,7 +97,7 @@ fn pieces(markdown: &str) -> Vec<Piece> {
                 pieces.extend(fence.take().filter(|(name, _)| SHELL.contains(name)).map(|(_, block)| block));
             }
             Some((name, block)) => {
-                // In a console only what is typed is a command. The rest is output.
+                // In a console transcript, lines after `$ ` are commands. The other lines are output.
                 let typed = if *name == "console" { marks.strip_prefix("$ ").unwrap_or("#") } else { marks };
                 block.text.push_str(typed);
                 block.text.push('\n');
@@ -163,7 +164,7 @@ wayword is well
 ";
 
     #[test]
-    fn commands_are_found_in_fences_of_shell_in_tables_and_in_text_that_wraps() {
+    fn commands_of_reads_shell_fences_tables_and_wrapped_text() {
         let found: Vec<String> = commands_of("A.md", DOCUMENT)
             .into_iter()
             .map(|found| format!("{} {} {:?} {}", found.place, found.program, found.args, found.is_within_text))
@@ -182,7 +183,7 @@ wayword is well
     }
 
     #[test]
-    fn what_is_set_for_a_command_alone_stays_with_it() {
+    fn commands_of_keeps_the_variables_of_a_command() {
         let found = commands_of("A.md", DOCUMENT);
         assert_eq!(found[3].variables, [("OFFLINE".into(), "1".into())]);
     }

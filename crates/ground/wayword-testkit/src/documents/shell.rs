@@ -1,7 +1,7 @@
-//! The part of a shell's syntax that documents use: words, quotes, continued lines, lists and pipes, variables before a
-//! command.
+//! A small parser for the shell syntax that our documents use: words, quotes, continued lines, lists and pipes, redirections,
+//! and variables before a command.
 
-/// One simple command: what a shell would run.
+/// One simple command in the sense of a shell: a program with its arguments, between `;`, `|`, `&&` and line ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Simple {
     /// Line of the text, from 0, on which it begins.
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn variables_before_a_command_are_none_of_its_words() {
+    fn commands_separate_variables_from_words() {
         let found = commands("OFFLINE=1 NAME='x y' run --at=2");
         assert_eq!(found[0].variables, [("OFFLINE".into(), "1".into()), ("NAME".into(), "x y".into())]);
         assert_eq!(found[0].words, ["run", "--at=2"]);

@@ -1,11 +1,12 @@
-//! Pictures that show a number, so that a provider can know from the picture alone which view it is.
+//! Pictures of a number, drawn as black and white blocks like a barcode. A scripted provider reads the number and so knows
+//! from the picture alone which view it was sent, even after JPEG and scaling.
 
 use wayword_core::Image;
 
-/// Blocks of a picture: 64 bits of the number, and 16 of a checksum.
+/// Blocks of a picture, one bit each: 64 bits of the number and 16 of a checksum.
 const COLUMNS: u32 = 10;
 const ROWS: u32 = 8;
-/// Pixels of a block: large enough to survive JPEG and half the size.
+/// Side of a block, pixels: large enough to survive JPEG and scaling to half the size.
 const BLOCK_PX: u32 = 16;
 
 /// A picture of a number, in large black and white blocks.
@@ -21,7 +22,7 @@ pub fn image(id: u64) -> Image {
     Image::new(width, height, rgb).unwrap_or_else(|_| unreachable!("as many pixels were made as there are"))
 }
 
-/// The number of such a picture, from the bytes of a JPEG or PNG file.
+/// Reads the number of a picture that [`image()`] drew, from the bytes of a JPEG or PNG file. `None` if the checksum is wrong.
 #[must_use]
 pub fn read(file: &[u8]) -> Option<u64> {
     let picture = image::load_from_memory(file).ok()?.into_luma8();
@@ -67,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_such_picture_has_no_number() {
+    fn read_refuses_bytes_that_are_no_barcode() {
         assert_eq!(read(b"nonsense"), None);
     }
 }

@@ -1,4 +1,4 @@
-//! How a provider behaves.
+//! The settings of a scripted provider: its models, latency, faults, rate limit and key.
 
 use super::{Faults, Rate};
 use std::{
@@ -13,13 +13,13 @@ use wayword_core::Role;
 pub struct Behaviour {
     /// The script of each model, by name. Any other name is answered with 404.
     pub scripts: BTreeMap<String, Arc<dyn Script>>,
-    /// Which of them do not see, as Ollama says of them.
+    /// The models that accept no pictures. Ollama's `/api/show` lists no `vision` for them.
     pub blind: BTreeSet<String>,
-    /// The time from a request to its answer or fault. A request is refused at once for its key or its rate.
+    /// The time from a request to its answer or fault. A request with a wrong key or above the rate is refused at once.
     pub latency: Duration,
-    /// What goes wrong.
+    /// Which faults occur, and how often.
     pub faults: Faults,
-    /// How many requests are allowed; `None` for any number.
+    /// The rate limit; `None` for no limit.
     pub rate: Option<Rate>,
     /// The only key that is accepted, in the dialect's header for it; `None` where no key is needed.
     pub key: Option<String>,
@@ -42,7 +42,7 @@ impl Behaviour {
     }
 }
 
-/// Plays a model.
+/// A substitute for a model: turns a request into the text of a reply.
 pub trait Script: Send + Sync {
     /// The model's reply. It should depend on the request alone, so that runs can be repeated.
     fn reply(&self, heard: &Heard) -> String;
@@ -59,7 +59,7 @@ pub struct Heard {
     pub pictures: Vec<Vec<u8>>,
     /// 0 gives the likeliest words.
     pub temperature: Option<f64>,
-    /// Most words of the reply, because a token is a word here.
+    /// Most words of the reply, because this provider counts a word as a token when it cuts replies.
     pub max_tokens: Option<u64>,
     /// Seed of the sampling.
     pub seed: Option<u64>,

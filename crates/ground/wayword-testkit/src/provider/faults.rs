@@ -1,4 +1,4 @@
-//! The faults, and which request gets which.
+//! The faults that the provider can commit, and the draw that decides which request gets which fault.
 
 use super::RetryAfter;
 use rand::Rng;
@@ -7,7 +7,7 @@ use std::time::Duration;
 /// What can go wrong with one request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
-    /// 429 although the rate was kept.
+    /// 429 although the client kept to the rate.
     TooMany(RetryAfter),
     /// 500.
     Server,
@@ -23,7 +23,7 @@ pub enum Fault {
     Closed,
     /// The body comes a byte at a time, with [`Faults::trickle`] between two bytes.
     Trickle,
-    /// Half of the JSON, with a `content-length` that says it is all.
+    /// Half of the JSON, with a `content-length` that matches the half, so that HTTP looks complete.
     Truncated,
     /// A reply without a choice in it.
     NoChoices,
@@ -43,7 +43,7 @@ pub enum Fault {
     Endless,
 }
 
-/// What goes wrong, and how often.
+/// Which faults occur, and how often.
 ///
 /// A fault is drawn from the seed, the request (its dialect, model and body) and the number of equal requests that were
 /// let in before. So the same requests get the same faults in every run, in any order, and a repeated request may
@@ -93,8 +93,8 @@ const PASSING: [Fault; 12] = [
 
 impl Faults {
     /// All faults after which the same request may succeed, equally often, together at `share` (0 to 1) of the
-    /// requests. They are the twelve of 500, 502, 503, 529, reset, closed, trickle, truncated, no choices, error under
-    /// 200, wrong type and echoed key, and 429, whose forms share its part.
+    /// requests. There are thirteen: 500, 502, 503, 529, reset, closed, trickle, truncated, no choices, error under 200, wrong
+    /// type, echoed key, and 429. The forms of 429 divide its part among themselves.
     #[must_use]
     pub fn storm(share: f64) -> Self {
         let each = share / (PASSING.len() + 1) as f64;

@@ -1,4 +1,5 @@
-//! What a test's pictures show.
+//! The true contents of the pictures in a test: rooms and things, by the number in the picture ([`super::barcode`]). A scripted
+//! eye looks them up to answer questions.
 
 use std::{
     collections::BTreeMap,
@@ -16,7 +17,7 @@ pub struct Thing {
     pub colour: Option<String>,
 }
 
-/// What a picture shows.
+/// The contents of one picture.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Scenery {
     /// The room.
@@ -25,7 +26,7 @@ pub struct Scenery {
     pub things: Vec<Thing>,
 }
 
-/// What each picture shows, by the picture's number. Clones share one gallery.
+/// The contents of all pictures, by the picture's number. Clones share one gallery.
 #[derive(Debug, Clone, Default)]
 pub struct Gallery(Arc<Mutex<BTreeMap<u64, Scenery>>>);
 
@@ -35,7 +36,7 @@ impl Gallery {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(id, scenery);
     }
 
-    /// What a picture shows.
+    /// The contents of a picture; `None` if it was not added.
     #[must_use]
     pub fn scenery(&self, id: u64) -> Option<Scenery> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&id).cloned()

@@ -1,9 +1,9 @@
-//! What a provider counts.
+//! Counts of requests, answers and faults, with which tests check that a client repeats and bills what it should.
 
 use super::Fault;
 use std::collections::BTreeMap;
 
-/// Counts of what has happened.
+/// The counts of a provider so far.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Log {
     /// Requests that came, refused ones too.
@@ -25,16 +25,16 @@ pub struct Log {
     pub faults: BTreeMap<Fault, u64>,
     /// Most requests that were in work at the same time.
     pub most_at_once: u64,
-    /// The longest chain of requests each of which came after the one before was done with: so many times somebody waited,
-    /// however many were in work at a time. It does not depend on how fast the machine is, as long as requests that are sent
-    /// together come within the latency.
+    /// The length of the longest chain of requests in which each came after the one before had ended: how often a client
+    /// waited, however many requests it sent at a time. This does not depend on the speed of the machine, as long as requests
+    /// that are sent together arrive within the latency.
     pub rounds: u64,
     /// Each distinct request (its dialect, model and body), by hash.
     pub bodies: BTreeMap<u64, Body>,
     pub(super) at_once: u64,
 }
 
-/// How often the same request came.
+/// How often one request came, was let in and was answered.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Body {
     /// Times that it came.
@@ -64,7 +64,7 @@ impl Log {
         self.faults.values().sum()
     }
 
-    /// The round of a request that came.
+    /// Counts a request that came, and returns its round.
     pub(super) fn receive(&mut self, request: u64) -> u64 {
         self.received += 1;
         self.at_once += 1;
@@ -73,13 +73,13 @@ impl Log {
         self.rounds + 1
     }
 
-    /// A request of a round is done with.
+    /// Counts the end of a request of a round.
     pub(super) fn finish(&mut self, round: u64) {
         self.at_once -= 1;
         self.rounds = self.rounds.max(round);
     }
 
-    /// How many requests were let in before this one, and how many of them were equal to it.
+    /// Counts a request that is let in. Returns how many were let in before it, and how many of them were equal to it.
     pub(super) fn admit(&mut self, request: u64) -> (u64, u64) {
         let body = self.bodies.entry(request).or_default();
         let before = (self.admitted, u64::from(body.admitted));

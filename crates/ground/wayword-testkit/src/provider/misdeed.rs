@@ -1,4 +1,4 @@
-//! Commits a fault.
+//! Turns a drawn fault into the HTTP response, or the broken connection, that a failing service would give.
 
 use super::{
     Dialect, Fault, Faults,
@@ -13,7 +13,7 @@ use serde_json::Value;
 
 const PAGE: &str = "<!DOCTYPE html><html><head><title>502 Bad Gateway</title></head><body>Bad Gateway</body></html>";
 
-/// What is needed to commit a fault.
+/// A request with its right answer, ready to be spoilt by a fault.
 pub(super) struct Misdeed<'a> {
     pub(super) dialect: Dialect,
     pub(super) faults: &'a Faults,

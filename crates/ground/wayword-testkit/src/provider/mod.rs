@@ -1,6 +1,6 @@
-//! A model provider for tests and measurements. It speaks the dialects of the real ones on one port of this machine,
-//! answers from scripts, and commits every fault that real services have. The test sets the share of each fault, and a
-//! seed draws the requests that get it.
+//! A model provider for tests and measurements: an HTTP server on this machine that speaks the dialects of the real ones on
+//! one port and answers from scripts. It can fail in every way that real services fail. The test sets the share of each fault,
+//! and the requests that get it are drawn from a seed.
 
 pub mod barcode;
 mod behaviour;
@@ -64,7 +64,7 @@ impl Provider {
         format!("http://{}{}", self.address, dialect.base_path())
     }
 
-    /// How many requests have come so far, of all kinds but the lists of models and what one can do.
+    /// How many requests have come so far. Requests for the list of models or for a model's capabilities do not count.
     #[must_use]
     pub fn requests(&self) -> u64 {
         self.shared.tally().received

@@ -1,5 +1,5 @@
-//! Any platform, with pictures that a [`FlawedEye`](super::scripts::FlawedEye) can read, because a gallery has their
-//! labels.
+//! Wraps a platform so that its pictures show barcodes instead of the scene. The labels of each view go into a gallery under the
+//! barcode's number, and so a [`FlawedEye`](super::scripts::FlawedEye) can answer questions about the picture.
 
 use super::{Gallery, Scenery, Thing, barcode};
 use sha2::{Digest, Sha256};
@@ -9,7 +9,7 @@ use wayword_core::{
     ViewpointId, Where,
 };
 
-/// A platform whose views show a number instead of the scene.
+/// A platform with a barcode in each view instead of a picture of the scene.
 pub struct Pictured<P> {
     platform: P,
     gallery: Gallery,
@@ -45,7 +45,7 @@ impl<P: Platform> Platform for Pictured<P> {
     }
 
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
-        // The picture is replaced, so none is drawn.
+        // The barcode replaces the picture, so the platform need not draw one.
         let view = self.platform.look_without_picture(scene, from, gaze)?;
         let truth = view.ground_truth().cloned();
         let id = id(scene, from, gaze);
@@ -85,7 +85,7 @@ impl<P: Platform> Platform for Pictured<P> {
     }
 }
 
-/// The number of a view. Equal views have equal numbers.
+/// The number of a view, hashed from the scene, the position and the direction. Equal views have equal numbers.
 fn id(scene: &SceneId, from: &Frame, gaze: Gaze) -> u64 {
     let mut hash = Sha256::new();
     hash.update(scene.as_str());
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_can_be_looked_up_by_its_picture() {
+    fn gallery_has_the_contents_of_each_picture() {
         let gallery = Gallery::default();
         let world = Pictured::new(Cell, gallery.clone());
         let scene = world.scenes().unwrap().remove(0);

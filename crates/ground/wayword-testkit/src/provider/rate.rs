@@ -1,4 +1,4 @@
-//! How many requests are allowed.
+//! The rate limit of the provider: a token bucket.
 
 use super::RetryAfter;
 use std::time::{Duration, Instant};
@@ -10,11 +10,11 @@ pub struct Rate {
     pub requests_per_s: f64,
     /// How many requests a full bucket holds; it is full at the start.
     pub burst: u32,
-    /// How a refusal says when the next request is allowed.
+    /// The form in which a refusal announces when the next request is allowed.
     pub retry_after: RetryAfter,
 }
 
-/// What is left of a rate.
+/// The bucket in use: how many requests are left in it, and when that was computed.
 #[derive(Debug)]
 pub(super) struct Bucket {
     rate: Rate,
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn refused_requests_take_nothing() {
+    fn refused_requests_do_not_drain_the_bucket() {
         let start = Instant::now();
         let rate = Rate { requests_per_s: 10.0, burst: 3, retry_after: RetryAfter::Seconds };
         let mut bucket = Bucket::full(rate, start);

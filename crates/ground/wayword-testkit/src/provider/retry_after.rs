@@ -1,14 +1,14 @@
-//! How a service says when to come back.
+//! The forms in which services announce how long a client should wait after a 429.
 
 use super::Dialect;
 use jiff::{Timestamp, fmt::rfc2822};
 use serde_json::{Value, json};
 use std::time::{Duration, SystemTime};
 
-/// The forms in which a 429 says how long to wait.
+/// How a 429 announces the wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RetryAfter {
-    /// It does not say.
+    /// Not at all.
     Silent,
     /// `retry-after: 2`, rounded up.
     Seconds,
@@ -20,7 +20,7 @@ pub enum RetryAfter {
     Milliseconds,
     /// OpenAI's `x-ratelimit-reset-requests: 50ms`; Anthropic's `anthropic-ratelimit-requests-reset` with a timestamp.
     Reset,
-    /// Gemini's `RetryInfo` in the error's body. A dialect whose error is not an object leaves it out.
+    /// Gemini's `RetryInfo` in the error's body. A dialect with errors that are no objects leaves it out.
     RetryInfo,
 }
 
@@ -29,7 +29,7 @@ impl RetryAfter {
     pub const ALL: [Self; 7] =
         [Self::Silent, Self::Seconds, Self::Decimal, Self::HttpDate, Self::Milliseconds, Self::Reset, Self::RetryInfo];
 
-    /// The headers that say it.
+    /// The headers that announce the wait.
     pub(super) fn headers(self, wait: Duration, dialect: Dialect) -> Vec<(&'static str, String)> {
         match self {
             Self::Silent | Self::RetryInfo => Vec::new(),

@@ -1,4 +1,5 @@
-//! From a request to its answer.
+//! The HTTP server: routes requests by dialect, checks key and rate, waits the latency, asks the script, and answers or commits
+//! the fault that was drawn.
 
 use super::{
     Behaviour, Dialect, Heard, Log,
@@ -24,12 +25,12 @@ use tokio::net::TcpListener;
 
 /// Largest request that is accepted; several pictures fit.
 const LARGEST_BODY: usize = 64 << 20;
-/// The tokens that a picture counts as: about those of one of 512 x 384 pixels, as two large services count.
+/// Tokens that are billed for a picture: about as many as two large services bill for 512 x 384 pixels.
 const PICTURE_TOKENS: u64 = 262;
 /// Characters of English text for each of its tokens.
 const CHARS_PER_TOKEN: u64 = 4;
 
-/// What all connections share.
+/// The state that all connections share.
 pub(super) struct Shared {
     behaviour: Behaviour,
     bucket: Option<Mutex<Bucket>>,
@@ -85,7 +86,7 @@ fn asked_of_gemini() -> MethodRouter<Arc<Shared>> {
     )
 }
 
-/// What a model can do, as Ollama says it.
+/// Ollama's `/api/show`: lists the capabilities of a model.
 async fn show(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
     let asked: Value = serde_json::from_slice(&body).unwrap_or_default();
     let model = asked["model"].as_str().unwrap_or_default();
@@ -119,7 +120,7 @@ impl Shared {
         self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Works on a request to its end, even if the client is gone, because a real service bills it all the same.
+    /// Handles a request to its end, even if the client hangs up meanwhile, because a real service bills it all the same.
     async fn worked(self: Arc<Self>, arrival: Arrival) -> Response {
         let dialect = arrival.dialect;
         let work = tokio::spawn(async move {
@@ -159,7 +160,8 @@ impl Shared {
         self.behaviour.key.as_ref().is_none_or(|key| *key == key_of(dialect, headers))
     }
 
-    /// How many requests were let in before this one, and how many of them were equal to it; `Err` where it is refused.
+    /// Lets a request in and returns how many were let in before it, and how many of them were equal to it; `Err` with the
+    /// refusal if its key, the rate or the quota forbids it.
     fn admitted(&self, arrival: &Arrival, request: u64) -> Result<(u64, u64), Box<Response>> {
         let dialect = arrival.dialect;
         let mut log = self.tally();

@@ -1,4 +1,5 @@
-//! Connections that can be made to misbehave below HTTP.
+//! TCP connections that can break on order: close, reset, trickle or never end. HTTP libraries cannot produce these faults, so
+//! this file wraps the stream beneath them.
 
 use axum::{
     extract::connect_info::Connected,
@@ -31,7 +32,7 @@ pub(super) enum Break {
     Endless,
 }
 
-/// Lets the server order a connection to break.
+/// A switch, shared between a connection and the handler of its requests, with which the handler orders it to break.
 #[derive(Clone, Default)]
 pub(super) struct Line(Arc<Mutex<Option<Break>>>);
 
@@ -51,7 +52,7 @@ impl Connected<IncomingStream<'_, Door>> for Line {
     }
 }
 
-/// Accepts connections that can break.
+/// A listener that wraps every connection it accepts in a [`Wire`].
 pub(super) struct Door(pub(super) TcpListener);
 
 impl Listener for Door {
@@ -62,8 +63,8 @@ impl Listener for Door {
         loop {
             match self.0.accept().await {
                 Ok((stream, address)) => {
-                    // Without it an answer waits for the acknowledgement of the one before. A failure to set it does no
-                    // harm.
+                    // Otherwise an answer waits for the acknowledgement of the one before. If this cannot be set, answers are
+                    // only slower.
                     let _ = stream.set_nodelay(true);
                     return (Wire { stream, line: Line::default(), sent: 0, half: None, pause: None }, address);
                 }
@@ -78,13 +79,13 @@ impl Listener for Door {
     }
 }
 
-/// A connection.
+/// A TCP connection. Once its [`Line`] orders a break, it spoils the bytes that are written to it.
 pub(super) struct Wire {
     stream: TcpStream,
     line: Line,
-    /// Bytes that were sent since the order to break.
+    /// Bytes sent since the order to break.
     sent: usize,
-    /// The byte at which the head, or the head and half of the body, ends.
+    /// Where sending changes: the end of the head for a trickle, the middle of the body for a reset; bytes from the start.
     half: Option<usize>,
     pause: Option<Pin<Box<Sleep>>>,
 }

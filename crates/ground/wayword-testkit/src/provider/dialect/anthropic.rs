@@ -1,4 +1,4 @@
-//! Anthropic's messages.
+//! The dialect of Anthropic's messages API.
 
 use super::{End, Said, Wrong, parts};
 use crate::provider::Heard;

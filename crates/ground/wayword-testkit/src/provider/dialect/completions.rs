@@ -1,4 +1,4 @@
-//! OpenAI's legacy completions: one prompt, which the model continues.
+//! The dialect of OpenAI's legacy completions: the request has one prompt, and the model continues it.
 
 use super::{End, Said, openai, parts};
 use crate::provider::Heard;

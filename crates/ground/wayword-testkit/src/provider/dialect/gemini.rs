@@ -1,4 +1,4 @@
-//! Gemini's `generateContent`.
+//! The dialect of Gemini's `generateContent`.
 
 use super::{End, Said, Wrong, parts};
 use crate::provider::Heard;

@@ -1,5 +1,4 @@
-//! The dialects of providers: one file each, with the parts of requests and the shapes of replies, errors and lists of
-//! models.
+//! The dialects of providers, one file each: how to read a request, and how to write replies, errors and lists of models.
 
 mod anthropic;
 mod completions;
@@ -31,7 +30,7 @@ pub enum Dialect {
     Ollama,
 }
 
-/// What a model says.
+/// A script's reply before it is written in a dialect.
 #[derive(Debug, Clone)]
 pub(super) struct Said {
     pub(super) model: String,
@@ -39,9 +38,9 @@ pub(super) struct Said {
     /// Calls of tools: name and arguments. They are not in the text.
     pub(super) calls: Vec<(String, Value)>,
     pub(super) end: End,
-    /// Words of all messages, and 85 for each picture.
+    /// Tokens of the request that are billed: one for four bytes of text, and a fixed number for each picture.
     pub(super) tokens_in: u64,
-    /// Words of the reply.
+    /// Tokens of the reply that are billed.
     pub(super) tokens_out: u64,
 }
 
@@ -54,7 +53,7 @@ pub(super) enum End {
     Refused,
 }
 
-/// What is wrong with a request, or with the service.
+/// The kinds of errors that a service reports, about a request or about itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wrong {
     Request,
@@ -67,7 +66,8 @@ pub(super) enum Wrong {
     Overloaded,
 }
 
-/// A reply's words, and its calls of tools: lines with a name and JSON, where the request has tools.
+/// Separates the words of a reply from its tool calls. If the request offers tools, a line with a name and a JSON object, as in
+/// `step {"way": 1}`, is a call.
 pub(super) fn with_calls(text: String, request: &Value) -> (String, Vec<(String, Value)>) {
     let has_tools = request.get("tools").and_then(Value::as_array).is_some_and(|tools| !tools.is_empty());
     if !has_tools {
@@ -82,7 +82,7 @@ pub(super) fn with_calls(text: String, request: &Value) -> (String, Vec<(String,
     (words.join("\n"), calls.into_iter().filter_map(call).collect())
 }
 
-/// A refusal in words, for dialects that have no mark for one.
+/// A refusal in words, for dialects without a field for refusals.
 const SORRY: &str = "I'm sorry, but I can't help with that.";
 
 impl Dialect {
@@ -166,12 +166,12 @@ impl Dialect {
         }
     }
 
-    /// An error with its status.
+    /// An error as a response with its HTTP status.
     pub(super) fn refuse(self, wrong: Wrong, message: &str) -> Response {
         self.refusal(wrong, message, Vec::new(), None)
     }
 
-    /// A 429 that says when to come back.
+    /// A 429 that announces the wait in the given form.
     pub(super) fn too_many(self, form: RetryAfter, wait: Duration) -> Response {
         let message = "Rate limit reached: too many requests.";
         self.refusal(Wrong::TooMany, message, form.headers(wait, self), form.details(wait))
@@ -200,7 +200,7 @@ impl Dialect {
             Wrong::Request => 400,
             Wrong::Key => 401,
             Wrong::Model => 404,
-            // Some services do not answer 429 where the account is empty.
+            // Some services answer something other than 429 when the account is empty.
             Wrong::Quota if self == Self::Anthropic => 400,
             Wrong::Quota if self == Self::Ollama => 402,
             Wrong::Quota | Wrong::TooMany => 429,

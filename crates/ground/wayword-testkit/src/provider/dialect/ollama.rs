@@ -1,4 +1,4 @@
-//! Ollama's own chat endpoint.
+//! The dialect of Ollama's own chat endpoint.
 
 use super::{End, Said, parts};
 use crate::provider::Heard;
@@ -20,7 +20,7 @@ pub(super) fn heard(body: &Value) -> Result<Heard, &'static str> {
 }
 
 pub(super) fn answer(said: &Said) -> Value {
-    // Ollama has no filter: a model that refuses says so in words.
+    // Ollama has no filter and no field for refusals: a model refuses in its text.
     let (text, reason) = match said.end {
         End::Stop => (said.text.as_str(), "stop"),
         End::Length => (said.text.as_str(), "length"),

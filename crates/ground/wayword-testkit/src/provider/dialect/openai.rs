@@ -1,4 +1,4 @@
-//! OpenAI's chat completions.
+//! The dialect of OpenAI's chat completions.
 
 use super::{End, Said, Wrong, parts};
 use crate::provider::Heard;

@@ -1,4 +1,4 @@
-//! Parts of requests that several dialects share.
+//! Reads the parts of requests that several dialects share: texts, lists, roles, pictures and sampling settings.
 
 use super::super::Heard;
 use base64::prelude::{BASE64_STANDARD, Engine};

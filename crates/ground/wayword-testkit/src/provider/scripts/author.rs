@@ -1,4 +1,4 @@
-//! Writes instructions from captions and moves, with mistakes now and then.
+//! A scripted author: it writes instructions from the captions and moves in a prompt, with occasional mistakes.
 
 use super::{Script, prompt::things, rng};
 use crate::provider::Heard;
@@ -10,7 +10,7 @@ use rand::{Rng, seq::IndexedRandom};
 pub struct Author {
     /// Seed of its draws.
     pub seed: u64,
-    /// How often it is careless. When the prompt says what was wrong before, it is so half as often.
+    /// How often it is careless, 0 to 1. It is half as careless when the prompt gives the reason of an earlier refusal.
     pub carelessness: f64,
 }
 
@@ -35,7 +35,7 @@ impl Script for Author {
         } else {
             fine_text(&frames, target, careless, &mut rng)
         };
-        // A way that already has a text gets the same one in other words.
+        // If the prompt lists texts that this path already has, the new text uses other words.
         match prompt.matches("This way already has the instruction: ").count() {
             0 => text,
             1 => text.replace("Walk past", "Go past").replace("Go on until", "Walk on until"),
@@ -56,7 +56,7 @@ fn frames(prompt: &str) -> Vec<Frame<'_>> {
     frames
 }
 
-/// The first thing of a caption that is not a room.
+/// The first thing that a caption names and that is not a room.
 fn landmark(caption: &str) -> Option<String> {
     things(caption).into_iter().find(|name| !name.ends_with("room") && !name.ends_with("way") && name != "place")
 }

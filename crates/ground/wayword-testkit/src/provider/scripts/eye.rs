@@ -1,5 +1,5 @@
-//! A flawed eye: it answers about a picture from the gallery, with hallucinated objects, misses and contradictions by
-//! seed.
+//! A scripted vision model with flaws. It looks up the true contents of a picture in the gallery and answers questions about
+//! it, but hallucinates some objects, misses others and contradicts itself, with shares that the test sets and a seed.
 
 use crate::provider::{Gallery, Heard, Scenery, Script, Thing, barcode};
 use rand::{Rng, SeedableRng, seq::SliceRandom};
@@ -11,31 +11,31 @@ use sha2::{Digest, Sha256};
 /// picture gets the same answer.
 #[derive(Debug, Clone)]
 pub struct FlawedEye {
-    /// What is really there.
+    /// The true contents of the pictures.
     pub gallery: Gallery,
     /// Seed of all draws.
     pub seed: u64,
     /// Share of the objects in a free description that are not there, on average.
     pub hallucinated_share: f64,
-    /// Share of the objects that are there and that a free description leaves out.
+    /// Share of the true objects that a free description leaves out.
     pub miss_share: f64,
-    /// How often it says no, and so contradicts itself, when it is asked whether one of its hallucinated objects is
-    /// there. A question about such an object exposes it with this probability.
+    /// How often it answers no, and so contradicts itself, when it is asked whether one of its hallucinated objects is there.
+    /// A question exposes a hallucination with this probability.
     pub contradiction_share: f64,
-    /// How often it says no when it is asked whether something is there that is.
+    /// How often it denies an object that is there, when it is asked about it.
     pub blindness_share: f64,
-    /// How often it is not sure of something that is there, where it is asked how sure it is.
+    /// How often it marks an object that is there as uncertain, if the request asks how sure it is.
     pub hedge_share: f64,
-    /// The same for its hallucinated objects: models are less sure of those.
+    /// How often it marks a hallucinated object as uncertain. Real models are less sure of those.
     pub doubt_share: f64,
-    /// Share of the views for which it breaks the form that it is asked for.
+    /// Share of the views for which its structured answer does not have the form that was asked for.
     pub misshapen_share: f64,
 }
 
 impl FlawedEye {
-    /// An eye that hallucinates this share of the objects that it names. When it is asked, it admits 70 % of them. It
-    /// misses a tenth of the objects that are there and denies 3 % of them. Where it says how sure it is, it is not sure
-    /// of a tenth of what is there and of 45 % of what is not, and 2 % of its answers do not have the form.
+    /// An eye that hallucinates this share of the objects that it names, and denies 70 % of these when asked about them. It
+    /// misses a tenth of the true objects and denies 3 % of them. In structured answers it is uncertain of a tenth of the true
+    /// objects and of 45 % of the hallucinated ones, and 2 % of these answers do not have the right form.
     #[must_use]
     pub fn new(gallery: Gallery, seed: u64, hallucinated_share: f64) -> Self {
         Self {
@@ -90,7 +90,8 @@ impl Script for FlawedEye {
     }
 }
 
-/// What a picture shows that is not in the gallery: made up from its bytes, always the same for the same picture.
+/// Invents the contents of a picture that is not in the gallery. They are drawn from its bytes, so the same picture always gets
+/// the same contents.
 fn dream(picture: &[u8]) -> (u64, Scenery) {
     const DREAMS: [&str; 12] =
         ["sofa", "lamp", "table", "chair", "bed", "mirror", "plant", "desk", "cabinet", "picture", "rug", "sink"];
@@ -105,7 +106,7 @@ fn dream(picture: &[u8]) -> (u64, Scenery) {
     (rng.random(), Scenery { room: Some(room), things })
 }
 
-/// One look at one picture.
+/// One picture with its contents, as one eye looks at it.
 struct Look<'a> {
     eye: &'a FlawedEye,
     id: u64,
@@ -125,7 +126,7 @@ impl Look<'_> {
         self.rng(about).random_bool(share.clamp(0.0, 1.0))
     }
 
-    /// The things that a description names, each once.
+    /// The true things that a description names, each once, with the third of the picture that they are in.
     fn noticed(&self) -> Vec<(&str, u8)> {
         let mut noticed: Vec<(&str, u8)> = Vec::new();
         for Thing { name, third, .. } in &self.scenery.things {
@@ -139,7 +140,7 @@ impl Look<'_> {
         noticed
     }
 
-    /// The objects that it hallucinates in this picture.
+    /// The objects that it hallucinates in this picture, with the third that it places them in.
     fn hallucinated(&self) -> Vec<(&'static str, u8)> {
         let is_there = |object: &str| {
             let last = object.rsplit(' ').next().unwrap_or(object);
@@ -189,7 +190,8 @@ impl Look<'_> {
         }
     }
 
-    /// Everything in the form of the structured request. A view for which it breaks the form is right the second time.
+    /// The answer to a structured request: JSON with all things. If the first answer for a view is misshapen, `again` gives one
+    /// in the right form.
     fn structured(&self, again: bool) -> String {
         if !again && self.is(self.eye.misshapen_share, "form") {
             return self.describe();
@@ -309,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn hallucinated_objects_have_their_share_of_what_is_named() {
+    fn hallucinated_objects_have_their_share_of_all_named_objects() {
         let eye = eye(0.15);
         let counts = (0..500).map(|id| look(&eye, id, |look| (look.hallucinated().len(), look.noticed().len())));
         let (hallucinated, real) = counts.fold((0, 0), |sum, one| (sum.0 + one.0, sum.1 + one.1));
@@ -318,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn most_hallucinated_objects_are_admitted_and_what_is_not_there_is_denied() {
+    fn eye_admits_most_hallucinated_objects_and_denies_absent_ones() {
         let eye = eye(0.3);
         let (mut admitted, mut asked) = (0, 0);
         for id in 0..500 {

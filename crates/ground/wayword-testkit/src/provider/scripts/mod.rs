@@ -1,5 +1,5 @@
-//! Scripts for the roles of a run. They ask, summarise and write like a careless language model, in the same way in every
-//! run.
+//! Scripts for the roles of a run: they see, ask, summarise, write and walk like a careless model. Their mistakes are drawn from a
+//! seed, so every run repeats them.
 
 mod author;
 mod eye;
@@ -25,18 +25,18 @@ pub use walker::{Gait, MISCHIEF, Route, Walker};
 /// a picture goes to the eye, and any other to the role that its prompt is for.
 #[derive(Debug, Clone)]
 pub struct Cast {
-    /// Sees.
+    /// Answers about pictures.
     pub eye: FlawedEye,
-    /// Asks.
+    /// Asks questions about a picture.
     pub questioner: Questioner,
-    /// Sums up.
+    /// Summarises a dialogue.
     pub summariser: Summariser,
-    /// Writes.
+    /// Writes instructions.
     pub author: Author,
 }
 
 impl Cast {
-    /// A cast whose text roles make mistakes with this probability.
+    /// A cast with text roles that make mistakes with this probability.
     #[must_use]
     pub fn new(eye: FlawedEye, seed: u64, carelessness: f64) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl<F: Fn(&Heard) -> String + Send + Sync> Script for F {
     }
 }
 
-/// A generator whose draws are the same for the same words.
+/// A random generator that is seeded by a text, so that equal prompts get equal draws.
 fn rng(seed: u64, about: &str) -> ChaCha8Rng {
     let mut hash = Sha256::new();
     hash.update(seed.to_le_bytes());

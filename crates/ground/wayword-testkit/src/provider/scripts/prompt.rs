@@ -1,4 +1,4 @@
-//! Reads prompts as far as the scripts need them.
+//! Extracts from prompts what the scripts need: questions with answers, names of things, rooms.
 
 /// The questions and answers of a transcript.
 pub(super) fn exchanges(prompt: &str) -> Vec<(&str, &str)> {
@@ -45,7 +45,7 @@ pub(super) fn things(text: &str) -> Vec<String> {
     things
 }
 
-/// Whether an answer says no.
+/// Whether an answer begins with "no".
 pub(super) fn denies(answer: &str) -> bool {
     answer.to_lowercase().starts_with("no")
 }
@@ -71,7 +71,7 @@ pub(super) fn enumerate(items: &[String]) -> String {
     }
 }
 
-/// The first four things of a panorama, in one sentence.
+/// Summarises the views of a panorama in one sentence that names its first four things.
 pub(super) fn condensed(prompt: &str) -> String {
     let seen =
         prompt.split("It sees:").nth(1).and_then(|rest| rest.split("Describe the place").next()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Asks about a picture that it cannot see.
+//! A scripted questioner: it asks about a picture that it cannot see, from the dialogue so far.
 
 use super::{
     Script,
@@ -8,12 +8,12 @@ use super::{
 use crate::provider::Heard;
 use rand::Rng;
 
-/// Asks which room it is, whether the named objects are really there, and what is on either side.
+/// Asks for the kind of room, then whether each named object is really there, then about the left, the right and the floor.
 #[derive(Debug, Clone, Copy)]
 pub struct Questioner {
     /// Seed of its draws.
     pub seed: u64,
-    /// How often it adds other words to its question.
+    /// How often it wraps the question in other words, as real models do.
     pub chatter: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Sums up a dialogue, with mistakes now and then.
+//! A scripted summariser: it turns a dialogue about a picture into one sentence, with occasional mistakes.
 
 use super::{
     Script,
@@ -8,12 +8,12 @@ use super::{
 use crate::provider::Heard;
 use rand::Rng;
 
-/// Names the objects that were said to be there. When it is careless, it keeps those that were denied, or adds a piano.
+/// Names the objects that the answers affirmed. When it is careless, it keeps denied ones as well, or adds a piano.
 #[derive(Debug, Clone, Copy)]
 pub struct Summariser {
     /// Seed of its draws.
     pub seed: u64,
-    /// How often it is careless. When the prompt says what was wrong before, it never is.
+    /// How often it is careless, 0 to 1. It never is when the prompt gives the reason of an earlier refusal.
     pub carelessness: f64,
 }
 

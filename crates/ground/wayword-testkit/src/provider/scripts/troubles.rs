@@ -1,13 +1,13 @@
-//! An eye with the known troubles of BLIP-2 (ChatCaptioner #4 and #7; LAVIS #472, #713, #806).
+//! Spoils the answers of a script in the ways that BLIP-2 is known for (ChatCaptioner #4 and #7; LAVIS #472, #713, #806).
 
 use super::{Script, rng};
 use crate::provider::Heard;
 use rand::Rng;
 use std::sync::Arc;
 
-/// Another script, but a share of its answers cannot be used. A quarter of these each is empty, the question, a loop of
-/// a few words, or one fixed sentence. The same request gets the same answer each time. The question in other words is
-/// another draw, so asking again may help.
+/// Wraps a script and makes a share of its answers useless. Each of these is, equally often, empty, the question itself, a loop
+/// of a few words, or one fixed sentence. Equal requests get equal answers. A question in other words is drawn anew, so asking
+/// again may help.
 #[derive(Clone)]
 pub struct Troubled {
     script: Arc<dyn Script>,

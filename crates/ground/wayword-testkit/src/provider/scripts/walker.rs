@@ -1,6 +1,6 @@
-//! Plays a model that walks by the tools of an agent: along a route that it knows, at random, or badly.
+//! A scripted language model for the agent that walks by tools: it follows a known route, walks at random, or misbehaves.
 //!
-//! It reads the prompts of `wayword-navigation` as a model does: where it stands on the map, and the ways out.
+//! It parses the prompts of `wayword-navigation`, which contain the agent's place on the map and the ways out of it.
 
 use super::{Heard, Script, rng};
 use rand::Rng;
@@ -14,14 +14,14 @@ pub enum Gait {
     Route,
     /// This many hops, each through a random way, all equally likely.
     Random(usize),
-    /// In one of the ways of [`MISCHIEF`], by its instruction.
+    /// Not at all: it always gives one of the replies of [`MISCHIEF`], chosen by the instruction.
     Broken,
 }
 
-/// How far off a place can be on the map that a prompt tells, metres.
+/// Largest error of a place on the map of a prompt, metres: the map rounds to 0.1 m.
 const ROUNDED_M: f64 = 0.2;
 
-/// Plays a model that walks.
+/// A scripted model that chooses an agent's steps.
 #[derive(Debug, Clone)]
 pub struct Walker {
     gait: Gait,
@@ -30,11 +30,11 @@ pub struct Walker {
     routes: BTreeMap<String, Route>,
 }
 
-/// The places of a route, from its start: metres to the right, ahead and up, as the walker looks there.
+/// The places of a route relative to its start, metres: to the right, ahead and up, as seen by the walker at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route(Vec<DVec3>);
 
-/// What a model does that breaks, the same at each call.
+/// Replies of a broken model; one of them is repeated at each call.
 pub const MISCHIEF: [&str; 10] = [
     "I would go to the left here.",
     "fly {\"way\": 1, \"why\": \"it is quicker\"}",
@@ -49,7 +49,8 @@ pub const MISCHIEF: [&str; 10] = [
 ];
 
 impl Route {
-    /// The route over some viewpoints of a graph, begun along a heading. Places that the graph does not have are left out.
+    /// The route over some viewpoints of a graph, for a walker that starts along a heading. Viewpoints that the graph does not
+    /// have are left out.
     #[must_use]
     pub fn along(graph: &ViewpointGraph, heading: Heading, viewpoints: &[ViewpointId]) -> Self {
         let places: Vec<DVec3> = viewpoints.iter().filter_map(|viewpoint| graph.position(viewpoint)).collect();
@@ -70,8 +71,9 @@ impl Walker {
         Self { gait, seed, routes: routes.into_iter().collect() }
     }
 
-    /// Takes the way that ends nearest to the next place. Places can lie closer together than the map tells, so the number
-    /// of hops says best how far along the route it is, as long as it is there.
+    /// Takes the way that ends nearest to the next place of the route. The walker's progress along the route is the number of its
+    /// hops, as long as that place matches its position; positions alone are ambiguous, because the map is rounded and places
+    /// can lie close together.
     fn along_route(&self, seen: &Prompt<'_>) -> String {
         let Some(Route(route)) = self.routes.get(seen.text) else { return "I do not know this one.".to_owned() };
         let is_at = |place: &usize| route.get(*place).is_some_and(|place| place.distance(seen.here) < ROUNDED_M);
@@ -121,13 +123,13 @@ impl Script for Walker {
     }
 }
 
-/// What a prompt says of the walk.
+/// The state of the walk, as parsed from a prompt.
 struct Prompt<'a> {
     text: &'a str,
     here: DVec3,
     /// The direction in which the walker looks, radians to the right of how it looked at the start.
     heading_rad: f64,
-    /// Hops so far that the prompt tells.
+    /// Hops so far, according to the prompt.
     hops: usize,
     /// Turn (radians, positive right), length and climb (metres) of each way out.
     ways: Vec<(f64, f64, f64)>,
@@ -157,7 +159,7 @@ impl<'a> Prompt<'a> {
     }
 }
 
-/// The number behind some words.
+/// The number that follows some words in a text.
 fn after(text: &str, words: &str) -> Option<f64> {
     let rest = &text[text.find(words)? + words.len()..];
     let end = rest.find(|c: char| !c.is_ascii_digit() && c != '.' && c != '-').unwrap_or(rest.len());
@@ -213,14 +215,14 @@ mod tests {
     }
 
     #[test]
-    fn it_takes_the_way_to_the_next_place_and_stops_at_the_last() {
+    fn walker_takes_the_way_to_the_next_place_and_stops_at_the_last() {
         let route = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 1.0]];
         assert!(reply(Gait::Route, &route).starts_with("step {\"way\": 2, "));
         assert!(reply(Gait::Route, &route[..2]).starts_with("stop {"));
     }
 
     #[test]
-    fn at_random_it_stops_after_its_hops() {
+    fn random_walker_stops_after_its_hops() {
         assert!(reply(Gait::Random(2), &[]).starts_with("step {"));
         assert!(reply(Gait::Random(1), &[]).starts_with("stop {"));
         assert!(MISCHIEF.contains(&reply(Gait::Broken, &[]).as_str()));

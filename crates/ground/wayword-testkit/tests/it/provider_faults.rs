@@ -1,4 +1,4 @@
-//! The faults of the provider, and what it says of its limits, in each dialect.
+//! Each dialect reports faults, keys, token counts and waits in its own form.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -49,7 +49,7 @@ fn requests() -> [(Dialect, &'static str, &'static str, Value); 5] {
     ]
 }
 
-/// A connection on which a request was just sent. Without a body it is a GET.
+/// Opens a connection and sends a request on it: a POST, or a GET if there is no body.
 fn sent(base: &str, path: &str, header: &str, body: Option<&Value>) -> TcpStream {
     let (address, root) = base.strip_prefix("http://").unwrap().split_once('/').unwrap_or((&base[7..], ""));
     let root = if root.is_empty() { String::new() } else { format!("/{root}") };
@@ -77,7 +77,7 @@ fn ask(provider: &Provider) -> TcpStream {
 }
 
 #[test]
-fn every_dialect_wants_its_key_and_counts_its_tokens() {
+fn every_dialect_requires_its_key_and_counts_its_tokens() {
     let provider = provider(Faults::default());
     for (dialect, path, header, body) in requests() {
         let base = provider.base_url(dialect);
@@ -122,7 +122,7 @@ fn models_are_listed_as_each_dialect_does() {
 }
 
 #[test]
-fn a_429_tells_its_wait_in_every_form() {
+fn a_429_announces_its_wait_in_every_form() {
     let faults = RetryAfter::ALL.map(|form| Some(Fault::TooMany(form)));
     let provider = provider(Faults::default().first(&faults));
     for form in RetryAfter::ALL {
@@ -197,7 +197,7 @@ fn keys_and_quotas_run_out_and_errors_can_repeat_the_key() {
 }
 
 #[test]
-fn equal_requests_are_counted_by_what_they_got() {
+fn equal_requests_are_counted_by_their_outcome() {
     let provider = provider(Faults::default().first(&[Some(Fault::Server), None, None]));
     assert_eq!([0; 3].map(|_| answered(ask(&provider)).0), [500, 200, 200]);
     let log = provider.log();

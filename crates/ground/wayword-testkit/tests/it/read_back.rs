@@ -1,4 +1,4 @@
-//! The files that are written fit the field's formats.
+//! The files of the made-up building can be read by the readers for the real data sets, and are the same at each run.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -107,7 +107,7 @@ fn a_wrong_key_is_refused_in_every_dialect() {
 }
 
 #[test]
-fn faults_break_what_they_say() {
+fn each_fault_breaks_the_response_as_its_name_promises() {
     let faults = [
         Fault::Overloaded,
         Fault::TooMany(RetryAfter::Milliseconds),
@@ -138,7 +138,7 @@ fn faults_break_what_they_say() {
 }
 
 #[test]
-fn what_is_above_the_rate_is_rejected_and_does_not_count() {
+fn requests_above_the_rate_are_rejected_and_not_admitted() {
     let rate = Rate { requests_per_s: 0.5, burst: 3, retry_after: RetryAfter::Seconds };
     let (provider, base) = provider(Behaviour { rate: Some(rate), ..behaviour(echo) });
     let statuses: Vec<u16> = (0..6).map(|_| post(&base, "/v1/chat/completions", "", &chat("x")).unwrap().0).collect();
