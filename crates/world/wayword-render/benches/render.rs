@@ -112,7 +112,7 @@ fn views(criterion: &mut Criterion) {
     }
 }
 
-/// Prints how long one pose after another takes: on a busy machine the least says more than criterion's mean.
+/// Prints the times of one pose after another. On a busy machine the least time is a better figure than criterion's mean.
 fn print_times<P>(name: &str, draw: impl Fn(u32) -> P) {
     let each_ms = |step| {
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! The background of a picture.
+//! The background of a picture: the colour of every pixel that no triangle covers.
 
 /// Colour of the pixels that no triangle covers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

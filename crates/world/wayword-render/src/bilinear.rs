@@ -1,4 +1,4 @@
-//! Colours between the centres of pixels.
+//! Interpolates the colours of a picture between the centres of its pixels.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! The pinhole camera.
+//! The pinhole camera: where an eye is, in which direction it looks, and how wide its view is.
 
 use crate::picture::{RenderError, check_finite, check_size};
 use glam::{DMat3, DVec3};
@@ -8,7 +8,7 @@ use wayword_core::Gaze;
 const NARROWEST_RAD: f64 = 0.05;
 const WIDEST_RAD: f64 = 2.6;
 
-/// The gaze that one flat picture can show: as wide as asked, or as wide as it can be.
+/// The gaze with its width limited to a field of view that one flat picture can show.
 #[must_use]
 pub fn flat(gaze: Gaze) -> Gaze {
     Gaze { horizontal_fov_rad: gaze.horizontal_fov_rad.clamp(NARROWEST_RAD, WIDEST_RAD), ..gaze }
@@ -59,7 +59,8 @@ impl Camera {
         Self { position, heading_rad: gaze.heading.rad(), elevation_rad: 0.0, vertical_fov_rad, width, height }
     }
 
-    /// Rotation whose columns are right, up and backward (-forward) in the world: the camera frame is GL's.
+    /// The rotation from the camera's axes to the world's. Its columns are right, up and backward (-forward) in the world: the
+    /// camera frame is GL's.
     #[must_use]
     pub fn world_from_camera(&self) -> DMat3 {
         let (sin_h, cos_h) = libm::sincos(self.heading_rad);
@@ -69,8 +70,8 @@ impl Camera {
         DMat3::from_cols(right, right.cross(forward), -forward)
     }
 
-    /// Where a world point falls: (x_px, y_px, depth_m), depth along forward; `None` for points not in front of the
-    /// eye. The point may lie outside the picture.
+    /// The pixel position and the depth of a world point: (x_px, y_px, depth_m), depth along forward; `None` for points not in
+    /// front of the eye. The position may lie outside the picture.
     #[must_use]
     pub fn project(&self, point: DVec3) -> Option<(f64, f64, f64)> {
         let axes = self.world_from_camera();
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_cannot_be_drawn() {
+    fn check_numbers_refuses_impossible_cameras() {
         assert!(Camera { width: 0, ..camera(0.0, 0.0) }.check().is_err());
         assert!(Camera { height: MAX + 1, ..camera(0.0, 0.0) }.check().is_err());
         assert!(Camera { vertical_fov_rad: f64::NAN, ..camera(0.0, 0.0) }.check().is_err());

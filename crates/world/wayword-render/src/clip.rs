@@ -1,4 +1,4 @@
-//! Cutting triangles at planes (Sutherland-Hodgman).
+//! Cuts triangles at planes, one plane after another (Sutherland and Hodgman's algorithm).
 
 use crate::view::Plane;
 use glam::Vec3;
@@ -12,10 +12,10 @@ pub(crate) struct ClipVertex {
     pub(crate) weights: Vec3,
 }
 
-/// The convex polygon that `planes` leave of a triangle, in its winding; empty where nothing is left.
+/// The part of a triangle that lies inside all `planes`: a convex polygon with the triangle's winding, or empty.
 ///
-/// Two triangles that share an edge get the same points on it: a cut is always computed from the kept end to the
-/// dropped one.
+/// Two triangles that share an edge get the same points on it, because a cut is always computed from the end inside the
+/// plane to the end outside.
 pub(crate) fn clip(triangle: [Vec3; 3], planes: &[Plane]) -> Vec<ClipVertex> {
     let [a, b, c] = triangle;
     let mut polygon = vec![

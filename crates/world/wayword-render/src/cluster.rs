@@ -1,4 +1,4 @@
-//! Triangles in groups that lie together: a whole group is dropped when it lies outside the view.
+//! Sorts triangles into groups that lie close together, so that a whole group outside the view is skipped at once.
 
 use crate::mesh::Mesh;
 use glam::{Vec2, Vec3};
@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 /// Triangles per cluster, at most.
 pub(crate) const CLUSTER_TRIANGLES: usize = 256;
 
-/// The place of a vertex that is not stored yet.
+/// Marks a vertex that is not stored yet.
 const NOWHERE: u32 = u32::MAX;
 
 /// A triangle of a [`Soup`].
@@ -14,8 +14,8 @@ const NOWHERE: u32 = u32::MAX;
 pub(crate) struct Triangle {
     /// Indices into the soup's vertices.
     pub(crate) corners: [u32; 3],
-    /// Number in the order the caller gave. At equal depth the lower number is seen, so that clusters do not change the
-    /// picture.
+    /// Number in the caller's order. At equal depth the triangle with the lower number is visible, so that the division into
+    /// clusters does not change the picture.
     pub(crate) source: u32,
 }
 
@@ -86,7 +86,8 @@ impl Soup {
     }
 }
 
-/// The mesh's triangle numbers, neighbours in space near each other (Morton order of the centroids).
+/// The numbers of a mesh's triangles, in an order in which neighbours in space are near each other (Morton order of the
+/// centroids).
 fn near_order(mesh: &Mesh) -> Vec<u32> {
     let mut order: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     if order.len() <= CLUSTER_TRIANGLES {
@@ -108,7 +109,7 @@ fn near_order(mesh: &Mesh) -> Vec<u32> {
     order
 }
 
-/// Interleaves the low ten bits of the coordinates.
+/// Interleaves the low ten bits of the coordinates. Sorted by this number, cells follow a Z-shaped curve through space.
 fn morton(cell: Vec3) -> u32 {
     let spread = |value: f32| {
         let mut bits = (value as u32).min(1023);
@@ -125,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_triangle_is_kept_once_and_its_cluster_holds_it() {
+    fn clusters_contain_every_triangle_once() {
         let positions: Vec<Vec3> = (0..1000).map(|i| Vec3::new((i * 37 % 100) as f32, i as f32, 1.0)).collect();
         let triangles: Vec<[u32; 3]> = (0..900).map(|i| [i, i + 1, (i * 7) % 1000]).collect();
         let mesh = Mesh { positions, triangles, ..Mesh::default() };

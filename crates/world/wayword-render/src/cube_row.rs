@@ -1,7 +1,8 @@
-//! One row of a view of a cube map.
+//! Draws one row of a view of a cube map, fast.
 //!
-//! The rays of a row are evenly spaced, so along a face all that the lookup needs is linear in the column. The work is done
-//! for a few columns at a time, in loops without branches, which compilers turn into vector instructions.
+//! The rays of a row are evenly spaced, so all coordinates of the lookup are linear in the column as long as the rays meet
+//! the same face. The work is done for some columns at a time, in loops without branches, which compilers turn into
+//! vector instructions.
 
 use crate::cubemap::Face;
 use glam::Vec3;
@@ -9,15 +10,16 @@ use glam::Vec3;
 /// Columns that are worked on at a time.
 const COLUMNS: usize = 64;
 
-/// Added to a number from 0 up to this, it leaves no fraction: then the low bits of the sum are the nearest whole number.
+/// 2^23. A number from 0 up to this loses its fraction when this is added to it, because a float has 23 bits for it: the low
+/// bits of the sum are then the nearest whole number.
 const WHOLE: f32 = 8_388_608.0;
 
-/// One side of the cube, made for lookups.
+/// One side of the cube, prepared for lookups.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Side {
-    /// Pixels per row, and rows: at least two, so that each place lies between two of them.
+    /// Pixels per row, and rows: at least two, so that every place lies between two pixels.
     side_px: usize,
-    /// Three bytes per pixel, from the top left, and two more, so that eight bytes can be read where two pixels are.
+    /// Three bytes per pixel, from the top left, and two more at the end, so that eight bytes can be read at any pair of pixels.
     rgb: Vec<u8>,
 }
 
@@ -86,8 +88,8 @@ impl Rays {
     }
 }
 
-/// The coordinates of a ray across and down a side, and the one along which the side lies, as GL's cube lookup has them: +X
-/// is side 2, -X 4, +Y 0, -Y 5, +Z 1 and -Z 3.
+/// A ray in a side's own axes: across the side, down it, and towards it, as in GL's cube lookup. +X is side 2, -X 4, +Y 0,
+/// -Y 5, +Z 1 and -Z 3.
 fn on_side(side: u32, Vec3 { x, y, z }: Vec3) -> [f32; 3] {
     match side {
         0 => [x, z, y],
@@ -99,8 +101,8 @@ fn on_side(side: u32, Vec3 { x, y, z }: Vec3) -> [f32; 3] {
     }
 }
 
-/// Where the rays of a few columns meet a side: the pixel on the upper left of each place, and how far the place is from that
-/// pixel's centre to those of its neighbours, in 0..=1.
+/// The places where the rays of some columns meet a side: for each the pixel to its upper left, and its distances from that
+/// pixel's centre to the right and down, where 1 is the centre of the next pixel.
 struct Places {
     columns: usize,
     left: [u32; COLUMNS],
@@ -121,7 +123,7 @@ impl Places {
         let (side, last) = (side_px as f32, (side_px - 1) as f32);
         let split = |place: f32| {
             let at = place * side - 0.5;
-            // Not by `clamp`: what is not a number becomes 0.
+            // Not by `clamp`: NaN becomes 0 here.
             let at = if at > 0.0 { at } else { 0.0 };
             let at = if at < last { at } else { last };
             // At the far edge the second pixel has all the weight.
@@ -139,7 +141,7 @@ impl Places {
     }
 
     fn draw(&self, side: &Side, row: &mut [u8]) {
-        // Loops over one index of arrays: compilers make vectors of them, and not of the same loops over iterators.
+        // Compilers turn these loops over array indices into vector instructions; they fail to with iterators.
         let columns = self.columns.min(COLUMNS);
         let mut pixels = [[0; COLUMNS]; 4];
         for at in 0..columns {
@@ -169,8 +171,8 @@ fn between(pixels: [u32; 4], [right, down]: [f32; 2]) -> u32 {
     channel(0) | channel(8) | channel(16)
 }
 
-/// How many whole numbers above 0 fit into a number in 0..[`WHOLE`]. (A conversion would ask whether the number fits into an
-/// integer, and `f32::floor` is a function call on the baseline x86-64.)
+/// Rounds a number in 0..[`WHOLE`] down. (A conversion with `as` also checks whether the number fits into an integer, and
+/// `f32::floor` is a function call on the baseline x86-64.)
 fn count(value: f32) -> u32 {
     let raised = value + WHOLE;
     let is_above = raised - WHOLE > value;

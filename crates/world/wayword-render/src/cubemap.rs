@@ -1,4 +1,4 @@
-//! Six pictures around a point, and views sampled from them as the Matterport3D simulator does.
+//! A cube map, six pictures around a point, and views that are sampled from it as in the Matterport3D simulator.
 
 use crate::camera::check_fov;
 use crate::cube_row::{Rays, Side};
@@ -41,7 +41,7 @@ pub enum CubeMapError {
         /// Its bytes.
         bytes: usize,
     },
-    /// The strip does not hold six squares side by side.
+    /// The strip is not six squares side by side.
     #[error("skybox strip of {width}x{height} pixels with {bytes} bytes: give six square faces side by side, in RGB")]
     Strip {
         /// Pixels per row.
@@ -57,7 +57,7 @@ impl CubeMap {
     /// A cube map of six checked faces.
     ///
     /// # Errors
-    /// [`CubeMapError::Face`] names the first face whose bytes do not fill a square.
+    /// [`CubeMapError::Face`] names the first face that is no square or has the wrong number of bytes.
     pub fn new(faces: [Face; 6]) -> Result<Self, CubeMapError> {
         for (index, face) in faces.iter().enumerate() {
             let side = face.side_px as usize;

@@ -1,4 +1,4 @@
-//! Which objects show so much of themselves in a picture that a person would name them.
+//! Finds the objects that are visible enough in a picture for a person to name them.
 
 use crate::{Camera, Picture, Visible, visible_objects};
 use glam::DVec3;
@@ -10,7 +10,7 @@ const LEAST_SHARE: f64 = 0.0015;
 /// picture.
 const LEAST_SHOWN: f64 = 0.22;
 
-/// The ids that show on enough pixels to be named, the largest first.
+/// The ids on enough pixels to be named, the largest first.
 #[must_use]
 pub fn evident_objects(picture: &Picture) -> Vec<Visible> {
     let least = f64::from(picture.width) * f64::from(picture.height) * LEAST_SHARE;
@@ -21,8 +21,8 @@ pub fn evident_objects(picture: &Picture) -> Vec<Visible> {
 }
 
 impl Visible {
-    /// Whether only a sliver shows of an object whose box has these corners (metres, world frame). An object that
-    /// reaches behind the eye never counts as a sliver, because its box cannot be projected.
+    /// Whether only a sliver of an object is visible. `corners` are those of the object's box (metres, world frame). An object
+    /// that reaches behind the eye never counts as a sliver, because its box cannot be projected.
     #[must_use]
     pub fn is_sliver(&self, camera: &Camera, corners: &[DVec3; 8]) -> bool {
         self.shown(camera, corners).is_some_and(|share| share < LEAST_SHOWN)
@@ -54,7 +54,7 @@ pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {
 mod tests {
     use super::*;
 
-    /// Checks a box half a metre wide, `ahead_m` metres ahead, whose pixels fill `columns` of 160 columns.
+    /// Checks a box half a metre wide, `ahead_m` metres ahead, with pixels in `columns` of 160 columns.
     fn is_sliver(ahead_m: f64, columns: u32) -> bool {
         let camera = Camera {
             position: DVec3::ZERO,
@@ -70,13 +70,13 @@ mod tests {
     }
 
     #[test]
-    fn too_little_of_a_box_is_a_sliver_and_what_reaches_behind_the_eye_is_none() {
+    fn is_sliver_needs_a_small_share_of_a_box_before_the_eye() {
         assert!(!is_sliver(2.0, 20) && is_sliver(2.0, 4));
         assert!(!is_sliver(0.1, 4));
     }
 
     #[test]
-    fn what_shows_on_too_few_pixels_is_not_evident_and_the_largest_comes_first() {
+    fn evident_objects_skips_small_patches_and_sorts_by_size() {
         // 0.0015 of 40 x 50 pixels are three.
         let ids: Vec<u32> = (0..2000).map(|n| [7, 7, 0, 8, 8, 8, 0, 9, 9, 9, 9].get(n).copied().unwrap_or(0)).collect();
         let picture = Picture { width: 40, height: 50, rgb: Vec::new(), depth_m: vec![1.0; 2000], ids };

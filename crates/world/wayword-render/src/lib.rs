@@ -4,6 +4,10 @@
 //! lights: the light is already baked into vertex colours or textures. All geometry is in the world frame:
 //! right-handed, metres, z up; headings are 0 along +y and grow clockwise seen from above.
 //!
+//! The steps of drawing, in order: `scene` checks the meshes and sorts them into clusters (`cluster`), `view` projects
+//! corners to the pixel grid, `triangle_setup` and `clip` make screen triangles, `raster` finds the nearest triangle of each
+//! pixel, and `shade` gives the pixel its colour.
+//!
 //! ```
 //! use glam::{DVec3, Vec3};
 //! use wayword_render::{Camera, Material, Mesh, Scene, render};

@@ -1,11 +1,11 @@
-//! Triangles and their surface.
+//! Meshes and materials, as the caller gives them: triangles with texture coordinates, baked light and a surface.
 
 use glam::{Vec2, Vec3};
 
 /// The surface of a mesh.
 ///
-/// Colours multiply as they are stored (gamma-encoded sRGB, 1.0 = byte 255), which is what Habitat's unlit shader
-/// does. A factor `f` meant in linear light is the factor `f.powf(1.0 / 2.2)` here.
+/// Colours are multiplied as they are stored (gamma-encoded sRGB, 1.0 = byte 255), as in Habitat's unlit shader. A factor
+/// `f` for linear light is the factor `f.powf(1.0 / 2.2)` here.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Red, green, blue, alpha factor, each finite and not negative. Alpha is not used: everything drawn is opaque.

@@ -1,4 +1,7 @@
-//! Textures prepared for lookup: repeat wrap; nearest, bilinear or trilinear.
+//! Textures prepared for lookup, with nearest, bilinear or trilinear filtering. Outside [0, 1] they repeat.
+//!
+//! Trilinear filtering uses a mip chain: copies of the texture, each half as large as the one before. Far surfaces look up
+//! a small copy, so that fine patterns do not shimmer.
 
 use crate::texture::Texture;
 use glam::{Vec2, Vec3};
@@ -8,8 +11,8 @@ const WEIGHTS: f32 = 256.0;
 
 /// One size of a texture.
 ///
-/// Texels lie in blocks of 4 x 4, a cache line each: a lookup then mostly touches one line, and so do its neighbours,
-/// whichever way the texture lies in the view.
+/// Texels are stored in blocks of 4 x 4, a cache line each. So a lookup and those of neighbouring pixels mostly touch one
+/// line, in whichever direction the texture lies in the view.
 #[derive(Debug)]
 struct Level {
     width: u32,
@@ -33,7 +36,7 @@ impl Level {
         level
     }
 
-    /// The index of a texel is `row(y) + in_row(x)`.
+    /// The part of a texel's index that depends on its row. The index is `row(y) + in_row(x)`.
     fn row(&self, y: usize) -> usize {
         (y >> 2) * self.blocks_per_row * 16 + (y & 3) * 4
     }

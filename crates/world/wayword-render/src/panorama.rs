@@ -51,10 +51,10 @@ pub enum PanoramaError {
     Size(#[from] RenderError),
 }
 
-/// Joins the views ahead, right, behind and left into a panorama, `width` pixels wide. Without a `width`, it is as wide
-/// as keeps the detail in the middle of the views. Each of its pixels is a ray of the cylinder; its colour comes from
-/// the view that contains the ray, bilinear. The panorama is as high as all views reach at the seams, where they reach
-/// least high. Where a view is missing, it has the colour `blank`.
+/// Joins the views ahead, right, behind and left into a panorama, `width` pixels wide. Without a `width`, the panorama is
+/// wide enough for all detail in the middle of the views. Each pixel is a ray through the cylinder, and its colour is
+/// interpolated in the view that contains the ray. The height is limited by the seams, where views cover the least of the
+/// cylinder. A missing view has the colour `blank`.
 ///
 /// # Errors
 /// [`PanoramaError`] where no view is given, a view's bytes do not fill it, or a size is not allowed.
@@ -75,7 +75,7 @@ pub fn panorama(
     let natural = (PI * f64::from(widest)).round() as u32;
     let width = width.unwrap_or(natural.min(MAX_SIDE_PX));
     let step_rad = TAU / f64::from(width.max(1));
-    // The views reach least high on the cylinder at the seams.
+    // A view covers the least height of the cylinder at its sides, the seams.
     let height = (2.0 * lowest * FRAC_1_SQRT_2 / step_rad).floor().max(1.0);
     check_size(width.into(), height as u64)?;
     let height = height as u32;
@@ -177,7 +177,7 @@ mod tests {
         }
 
         #[test]
-        fn it_is_as_high_as_all_views_reach_and_no_higher(width in 8u32..900, heights in prop::array::uniform4(8u32..900)) {
+        fn panorama_is_as_high_as_all_views_reach(width in 8u32..900, heights in prop::array::uniform4(8u32..900)) {
             let pictures = heights.map(|height| vec![9; 3 * (width * height) as usize]);
             let views = std::array::from_fn(|side| Some(Quarter { width, height: heights[side], rgb: &pictures[side] }));
             let whole = panorama(views, None, [0; 3]).unwrap();
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_to_the_right_is_right_of_the_middle() {
+    fn panorama_shows_the_right_side_right_of_the_middle() {
         let pictures = [[10; 3], [20; 3], [30; 3], [40; 3]].map(|colour| colour.repeat(64 * 48));
         let whole = panorama(views(&pictures, 64, 48), Some(80), [0; 3]).unwrap();
         let column = |x: usize| whole.rgb[3 * x];
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_view_is_blank_and_nothing_else() {
+    fn panorama_is_blank_only_where_a_view_is_missing() {
         let pictures = [[10; 3], [20; 3], [30; 3], [40; 3]].map(|colour| colour.repeat(64 * 48));
         let mut views = views(&pictures, 64, 48);
         views[1] = None;
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_panorama_is_refused() {
+    fn panorama_refuses_missing_and_torn_views() {
         assert_eq!(panorama([None; 4], None, [0; 3]), Err(PanoramaError::Empty));
         let short = Quarter { width: 4, height: 4, rgb: &[0; 47] };
         assert!(matches!(panorama([Some(short); 4], None, [0; 3]), Err(PanoramaError::Bytes { view: 0, .. })));

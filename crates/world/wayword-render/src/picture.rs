@@ -1,4 +1,4 @@
-//! The result of drawing, and the reasons why it may fail.
+//! The result of drawing (colours, depths and ids), and the errors of drawing.
 
 /// The longest side a picture may have.
 pub const MAX_SIDE_PX: u32 = 8192;
@@ -10,11 +10,11 @@ pub struct Picture {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Gamma-encoded sRGB, three bytes per pixel; empty where it was drawn without colours.
+    /// Gamma-encoded sRGB, three bytes per pixel; empty if the picture was drawn without colours.
     pub rgb: Vec<u8>,
-    /// Distance along the camera's forward axis at the pixel's centre; `f32::INFINITY` where nothing is.
+    /// Distance along the camera's forward axis at the pixel's centre; `f32::INFINITY` in the background.
     pub depth_m: Vec<f32>,
-    /// The id of the mesh seen; 0 where nothing is.
+    /// The id of the visible mesh; 0 in the background.
     pub ids: Vec<u32>,
 }
 

@@ -1,4 +1,8 @@
-//! Which triangle is nearest at each pixel: coverage in integers, top-left fill rule, depth test.
+//! Finds the nearest triangle of each pixel.
+//!
+//! A triangle covers a pixel if the pixel's centre is inside all three edges. This is computed with integers, so no pixel
+//! between two triangles is missed or drawn twice. A centre exactly on an edge belongs to the triangle if the edge is a top
+//! or a left one (the top-left rule of GPUs).
 
 use crate::cluster::Triangle;
 use crate::setup::{Batch, ScreenTriangle, centres_between};
@@ -15,7 +19,7 @@ impl Seen {
     pub(crate) const NOTHING: Self = Self { batch: u32::MAX, place: u32::MAX };
 }
 
-/// A run of whole rows of the picture with what is nearest in each pixel.
+/// Some whole rows of the picture, with the nearest triangle of each pixel.
 pub(crate) struct Band {
     pub(crate) width: u32,
     pub(crate) first_row: u32,
@@ -52,7 +56,8 @@ impl Band {
         }
     }
 
-    /// `precedes` says whether this triangle comes before another one that is equally near.
+    /// Draws one triangle. `precedes` decides between two triangles that are equally near: it is true if this triangle comes
+    /// before the other.
     fn draw_triangle(&mut self, triangle: &ScreenTriangle, seen: Seen, end: u32, precedes: impl Fn(Seen) -> bool) {
         let Some([left, right]) = centres_between(triangle.corners.map(|c| c.x), self.width) else { return };
         let edges = edges(triangle);
@@ -78,7 +83,7 @@ impl Band {
     }
 }
 
-/// A directed edge: a pixel is inside where its value is not negative.
+/// A directed edge, with a value at each pixel: the pixel is inside the edge if the value is not negative.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     x: i64,
@@ -100,6 +105,7 @@ impl Edge {
     }
 }
 
+/// The centre of a pixel on one axis, in sub-pixel steps.
 fn centre(pixel: u32) -> i64 {
     i64::from(pixel) * i64::from(STEPS) + i64::from(STEPS / 2)
 }
@@ -114,7 +120,8 @@ fn edges(triangle: &ScreenTriangle) -> [Edge; 3] {
     })
 }
 
-/// The pixels (from, to) of a row of `count` that lie inside all edges, whose values at the first pixel are `at`.
+/// The range (from, to) of pixels inside all edges, in a row of `count` pixels. `at` are the edges' values at the first
+/// pixel. An edge's value is linear along the row, so the range follows by division, without a test of each pixel.
 fn span(edges: &[Edge; 3], at: [i64; 3], count: i64) -> Option<(i64, i64)> {
     let (mut start, mut stop) = (0, count);
     for (edge, value) in edges.iter().zip(at) {
@@ -181,7 +188,7 @@ mod tests {
         }
 
         #[test]
-        fn a_span_is_what_testing_every_pixel_finds(
+        fn inside_span_agrees_with_a_test_of_every_pixel(
             corners in proptest::array::uniform6(-20_000i64..20_000), row in 0u32..40,
         ) {
             let [ax, ay, bx, by, cx, cy] = corners;

@@ -1,4 +1,4 @@
-//! Drawing a scene: clusters to triangles, then bands of rows, each on any thread that is free.
+//! Draws a scene: turns its clusters into screen triangles, then draws bands of rows, each on any free thread.
 
 use crate::background::Background;
 use crate::camera::Camera;
@@ -31,7 +31,7 @@ pub fn render_ids(scene: &Scene, camera: &Camera) -> Result<Picture, RenderError
     Ok(draw(scene, &View::of_camera(camera), None))
 }
 
-/// Draws a view, with colours where it has a background.
+/// Draws a view, with colours if a background is given, or else with depths and ids alone.
 pub(crate) fn draw(scene: &Scene, view: &View, background: Option<Background>) -> Picture {
     let (width, height) = (view.width as usize, view.height as usize);
     let mut picture = Picture {
@@ -82,7 +82,7 @@ fn id_of(scene: &Scene, batches: &[Batch], seen: Seen) -> u32 {
     if seen == Seen::NOTHING { 0 } else { scene.surfaces[batches[seen.batch as usize].surface as usize].id }
 }
 
-/// Colours what is seen in a band.
+/// Gives the pixels of a band their colours, after their triangles are known.
 struct Painter<'a> {
     scene: &'a Scene,
     view: &'a View,

@@ -1,4 +1,4 @@
-//! A scene: checked once, then ready to be drawn from anywhere.
+//! A scene: its meshes, materials and textures are checked once, and can then be drawn from anywhere.
 
 use crate::background::Background;
 use crate::cluster::Soup;
@@ -6,7 +6,7 @@ use crate::mesh::{Material, Mesh};
 use crate::mipmap::MipMap;
 use crate::texture::{Texture, TextureError};
 
-/// Triangles that a scene may hold.
+/// Most triangles of a scene.
 pub const MAX_TRIANGLES: usize = 1 << 26;
 
 /// Positions must not lie further from the origin than this, on any axis.
@@ -18,7 +18,7 @@ pub enum Filter {
     /// Bilinear on the full picture, as Habitat does: exact, but fine patterns shimmer in the distance.
     #[default]
     Bilinear,
-    /// The nearest texel, unblended: for pictures whose colours encode object ids.
+    /// The nearest texel, unblended: for pictures with object ids encoded as colours.
     Nearest,
     /// Between the two levels of a mip chain that fit the pixel's footprint: no shimmer in the distance.
     Trilinear,
@@ -51,7 +51,7 @@ pub enum SceneError {
         /// Triangles given, all meshes together.
         triangles: usize,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle refers to a vertex that does not exist.
     #[error(
         "mesh {mesh}, triangle {triangle}: vertex {vertex} does not exist: the mesh has {vertices}, counted from 0"
     )]
@@ -78,7 +78,7 @@ pub enum SceneError {
         length: usize,
         /// Vertices of the mesh.
         vertices: usize,
-        /// Says that the list may also be empty, where it may.
+        /// A phrase for lists that may also be empty.
         or_none: &'static str,
     },
     /// A value is NaN, infinite, or beyond its bounds.
@@ -93,7 +93,7 @@ pub enum SceneError {
         /// What it should be.
         wanted: &'static str,
     },
-    /// A mesh names a material that is not there.
+    /// A mesh refers to a material that does not exist.
     #[error("mesh {mesh}: material {material} does not exist: the scene has {materials}, counted from 0")]
     NoMaterial {
         /// Index of the mesh.
@@ -103,7 +103,7 @@ pub enum SceneError {
         /// Materials of the scene.
         materials: usize,
     },
-    /// A material names a texture that is not there.
+    /// A material refers to a texture that does not exist.
     #[error("material {material}: texture {texture} does not exist: the scene has {textures}, counted from 0")]
     NoTexture {
         /// Index of the material.
@@ -124,7 +124,7 @@ pub enum SceneError {
     Texture {
         /// Index of the texture.
         texture: usize,
-        /// What is wrong with it.
+        /// The reason.
         source: TextureError,
     },
 }
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong_and_where() {
+    fn scene_errors_name_the_mesh_and_the_problem() {
         let vertex = refusal(Mesh { triangles: vec![[0, 1, 2], [0, 1, 3]], ..mesh() });
         assert_eq!(vertex, "mesh 0, triangle 1: vertex 3 does not exist: the mesh has 3, counted from 0");
         let uvs = refusal(Mesh { uvs: vec![Vec2::ZERO; 2], ..mesh() });

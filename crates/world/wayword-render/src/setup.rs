@@ -1,4 +1,7 @@
-//! From clusters to triangles on the pixel grid.
+//! Turns the clusters of a scene into triangles on the pixel grid.
+//!
+//! Clusters outside the view are skipped. A triangle that reaches behind the eye or far beyond the picture is clipped; one
+//! that faces away or covers no pixel's centre is dropped.
 
 use crate::clip::{ClipVertex, clip};
 use crate::cluster::{Cluster, Triangle};
@@ -8,7 +11,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
 
-/// No entry in [`Batch::cuts`]: the triangle is whole.
+/// Marks a triangle without an entry in [`Batch::cuts`], because it was not clipped.
 const WHOLE: u32 = u32::MAX;
 
 /// A triangle that covers, or may cover, pixels of the picture.
@@ -57,7 +60,7 @@ impl ScreenTriangle {
     }
 }
 
-/// Everything that a view can show of a scene, in the order of its clusters.
+/// The triangles of a scene that a view can show, in the order of the clusters.
 pub(crate) fn batches(scene: &Scene, view: &View) -> Vec<Batch> {
     let (frustum, clip_planes) = (view.frustum(), view.clip_planes());
     let visible = |cluster: &&Cluster| !view.misses(&frustum, cluster.centre, cluster.half_extent);
@@ -159,7 +162,8 @@ fn doubled_area([a, b, c]: &[Corner; 3]) -> i64 {
     ab[0] * ac[1] - ab[1] * ac[0]
 }
 
-/// The first and last pixel of `count` whose centre lies between the smallest and largest of `steps`.
+/// The first and last of `count` pixels that have their centre between the smallest and largest of `steps`; `None` if there
+/// is no such pixel.
 pub(crate) fn centres_between(steps: [i32; 3], count: u32) -> Option<[u16; 2]> {
     let [a, b, c] = steps;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));

@@ -1,4 +1,7 @@
-//! The colour of a covered pixel.
+//! Computes the colour of a covered pixel: texture times base colour times baked light.
+//!
+//! Texture coordinates and light are interpolated between the triangle's corners in perspective: attributes divided by the
+//! depth are linear on the screen, so the weights of the corners are divided by their depths.
 
 use crate::mesh::Material;
 use crate::raster::Seen;

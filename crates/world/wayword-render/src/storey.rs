@@ -1,4 +1,4 @@
-//! A storey of a scene from above, cut open above the eye.
+//! Draws a storey of a scene from above, cut open above the eye.
 
 use crate::picture::RenderError;
 use crate::scene::Scene;
@@ -20,7 +20,7 @@ const FINEST_M: f64 = 0.005;
 /// shimmer.
 const FINER: usize = 2;
 
-/// Draws the storey on which the viewpoints of a level stand; `None` where there are none.
+/// Draws the storey around the viewpoints of a level; `None` if the level has no viewpoints.
 ///
 /// # Errors
 /// [`RenderError`] where the viewpoints lie too far apart for a picture.
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_storey_is_seen_without_its_ceiling_and_where_it_is() {
+    fn draw_storey_leaves_out_the_ceiling() {
         // A red floor with a blue ceiling, and a green one upstairs.
         let red = tile(3.0, 1.0, 0.0, [255, 0, 0]);
         let meshes = vec![red, tile(3.0, 1.0, 2.5, [0, 0, 255]), tile(3.0, 1.0, 3.0, [0, 255, 0])];
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_wide_is_coarse_and_never_too_large() {
+    fn draw_storey_makes_wide_maps_coarse_and_never_too_large() {
         let scene = Scene::new(vec![tile(0.0, 0.0, 0.0, [9; 3])], vec![Material::default()], vec![]).unwrap();
         for far in [0.0, 7.3, 1e3, 1e6, 1e12] {
             let above = storey(&scene, &graph(&[([0.0; 3], 1), ([far, 0.3 * far, 0.0], 1)]), 1).unwrap().unwrap();

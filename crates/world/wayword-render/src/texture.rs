@@ -1,4 +1,4 @@
-//! Textures as the caller gives them.
+//! Textures as the caller gives them, with the check of their sizes.
 
 /// The longest side a texture may have.
 pub const MAX_TEXTURE_SIDE: u32 = 16_384;

@@ -1,4 +1,4 @@
-//! Maps: a scene seen straight from above, cut open at a height.
+//! Draws maps: a scene seen straight from above, cut open at a height.
 
 use crate::background::Background;
 use crate::picture::{Picture, RenderError, check_finite, check_size};
@@ -7,10 +7,10 @@ use crate::scene::Scene;
 use crate::view::View;
 use glam::{DVec2, DVec3};
 
-/// The colour of a map where nothing is.
+/// The background of a map.
 const PAPER: Background = Background::Plain([255; 3]);
 
-/// Draws the scene from straight above, without perspective: +x to the right, +y up. What lies higher than
+/// Draws the scene from straight above, without perspective: +x to the right, +y up. Everything higher than
 /// `cut_height_m` is cut away. The top left corner of the picture is (`bounds_min.x`, `bounds_max.y`); the sides are
 /// rounded up to whole pixels, so the world point (x, y) falls on the pixel position
 /// ((x - bounds_min.x) / metres_per_pixel, (bounds_max.y - y) / metres_per_pixel). Depths count from the cut down.

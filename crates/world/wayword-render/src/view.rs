@@ -1,9 +1,9 @@
-//! From the world to the pixel grid: the part of a camera or a map that drawing needs.
+//! Projects points of the world onto the pixel grid, for a camera with perspective or for a map without.
 
 use crate::camera::Camera;
 use glam::{DMat3, DVec3, Vec3};
 
-/// What lies nearer than this in front of a camera is cut away (Habitat's near plane).
+/// Surfaces nearer than this to a camera are cut away (Habitat's near plane).
 pub(crate) const NEAR_M: f32 = 0.01;
 
 /// Sub-pixel steps per pixel: corners snap to this grid, so that coverage is decided in integers and shared edges
@@ -63,8 +63,8 @@ impl View {
         Self::new(camera.position, axes, true, camera.focal_px(), [camera.width, camera.height])
     }
 
-    /// A map seen from `origin` straight down, north up; `origin` falls on the picture's centre and nothing above it
-    /// is drawn.
+    /// A map seen from `origin` straight down, north up. `origin` falls on the picture's centre, and everything above it is cut
+    /// away.
     pub(crate) fn of_map(origin: DVec3, px_per_m: f64, size: [u32; 2]) -> Self {
         Self::new(origin, DMat3::IDENTITY, false, px_per_m, size)
     }

@@ -1,4 +1,5 @@
-//! Which objects can be seen in a picture, found from its pixels. Hidden objects do not count.
+//! Lists the objects that are visible in a picture, with their boxes and depths. It counts pixels, so hidden objects are
+//! left out.
 
 use crate::picture::Picture;
 use std::collections::BTreeMap;
@@ -37,10 +38,10 @@ pub fn visible_objects(picture: &Picture) -> Vec<Visible> {
     found.into_iter().map(|(id, found)| found.into_visible(id)).collect()
 }
 
-/// What is known of one id so far.
+/// The pixels of one id that were counted so far.
 struct Found {
     depths_m: Vec<f32>,
-    /// First column and row, and those after the last.
+    /// The first column and row with a pixel, and the column and row after the last.
     ends: [u32; 4],
 }
 
@@ -80,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_picture_shows_nothing() {
+    fn visible_objects_of_an_empty_picture_is_empty() {
         let picture = Picture { width: 0, height: 0, rgb: vec![], depth_m: vec![], ids: vec![] };
         assert_eq!(visible_objects(&picture), []);
     }

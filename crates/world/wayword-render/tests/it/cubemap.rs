@@ -19,7 +19,7 @@ fn noise() -> [Face; 6] {
     std::array::from_fn(|_| Face { side_px: SIDE, rgb: (0..SIDE * SIDE * 3).map(|_| byte()).collect() })
 }
 
-/// The pose whose skybox x is east, y down and z north.
+/// The pose of a skybox with x to the east, y down and z to the north.
 fn upright() -> DMat3 {
     DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y)
 }

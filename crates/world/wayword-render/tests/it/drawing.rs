@@ -79,7 +79,7 @@ fn only_front_faces_show_unless_double_sided() {
 }
 
 #[test]
-fn at_equal_depth_the_first_triangle_is_seen() {
+fn at_equal_depth_the_first_triangle_is_visible() {
     let (one, two) = (square(1, Vec3::new(0.0, 4.0, 1.5), 0.5), square(2, Vec3::new(0.0, 4.0, 1.5), 0.5));
     let ids = |meshes| visible_objects(&draw(meshes, &camera(0.0, 0.0))).iter().map(|v| v.id).collect::<Vec<_>>();
     assert_eq!(ids(vec![one.clone(), two.clone()]), [1]);
@@ -116,7 +116,7 @@ fn textures_lie_the_right_way_up_and_in_perspective() {
     let colours = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]];
     let texels = (0..64 * 64).map(|i| colours[(i / 64 / 32) * 2 + i % 64 / 32]).collect();
     let texture = Texture::new(64, 64, texels).unwrap();
-    // The right side is four times as far away as the left one: its half of the picture is narrower.
+    // The right side is four times as far away as the left one, so its half of the picture is narrower.
     let positions =
         vec![Vec3::new(-1.0, 2.0, 0.5), Vec3::new(3.0, 8.0, 0.5), Vec3::new(3.0, 8.0, 2.5), Vec3::new(-1.0, 2.0, 2.5)];
     let uvs = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(Vec2::from).to_vec();
@@ -237,7 +237,7 @@ proptest! {
     }
 
     #[test]
-    fn the_nearer_of_two_squares_is_seen(near in 1.5..4.0f32, gap in 0.01..3.0f32, swap: bool) {
+    fn the_nearer_of_two_squares_is_visible(near in 1.5..4.0f32, gap in 0.01..3.0f32, swap: bool) {
         let mut squares = vec![square(1, Vec3::new(0.0, near, 1.5), 0.4), square(2, Vec3::new(0.2, near + gap, 1.5), 0.4)];
         let alone = draw(vec![squares[0].clone()], &camera(0.0, 0.0));
         if swap {

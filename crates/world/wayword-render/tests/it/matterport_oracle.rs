@@ -1,5 +1,5 @@
-//! Compares our views with those of the genuine Matterport3D simulator. Needs the oracle data; without it the test says
-//! that it is skipped.
+//! Compares our views with those of the genuine Matterport3D simulator. Without the simulator's recorded views (the oracle
+//! data), the test prints that it is skipped.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
