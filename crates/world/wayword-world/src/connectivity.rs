@@ -1,4 +1,4 @@
-//! `SCAN_connectivity.json`: the viewpoints of a building, and between which of them one can walk straight.
+//! Reads `SCAN_connectivity.json`: the viewpoints of a building, and the pairs between which one can walk straight.
 //!
 //! Format: Matterport3DSimulator's `connectivity/README.md`; a list of `{image_id, pose[16], included, visible[],
 //! unobstructed[], height}`, the pose row-major and in metres, z up. `visible` is not read, so a file may leave it out.
@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::path::Path;
 use wayword_core::{DMat3, DVec3, PlatformError, ViewpointGraph, ViewpointId, graph::GraphError};
 
-/// How the name of such a file ends, after the name of the scene.
+/// The end of such a file's name, after the name of the scene.
 pub const ENDING: &str = "_connectivity.json";
 
 /// Most viewpoints of a building (the largest real one has 345); the table of edges grows with the square of this
@@ -52,7 +52,8 @@ impl Viewpoint {
 }
 
 impl Connectivity {
-    /// The viewpoint graph. A viewpoint's storey is what `level` says, else it comes from the heights of the floors.
+    /// The viewpoint graph. `level` gives the storey of a viewpoint; if it gives `None`, the storey is found from the heights
+    /// of all floors.
     ///
     /// # Errors
     /// When two viewpoints have one name.
@@ -72,7 +73,7 @@ impl Connectivity {
     }
 }
 
-/// Reads a connectivity file; `None` if there is none. `hint` says what to do about a broken one.
+/// Reads a connectivity file; `None` if there is none. `hint` is the advice to the user in an error about a broken file.
 ///
 /// # Errors
 /// If the file does not have this format; the message names the viewpoint and the field.
@@ -107,6 +108,7 @@ fn parse(bytes: &[u8]) -> Result<Connectivity, String> {
     Ok(Connectivity { viewpoints, edges })
 }
 
+/// One item of the list; `None` if it is not included in the graph.
 fn viewpoint(item: &Value) -> Result<Option<Viewpoint>, String> {
     let id = ViewpointId::new(values::text(item, "image_id")?).map_err(|error| format!("field `image_id`: {error}"))?;
     let named = |reason| format!("{id}: {reason}");
@@ -138,6 +140,7 @@ fn pose(item: &Value) -> Result<[f64; 16], String> {
     Ok(pose)
 }
 
+/// The indices of the viewpoints to which one can walk straight from this item, among all `count` items of the file.
 fn neighbours(item: &Value, count: usize) -> Result<Vec<usize>, String> {
     let flags = values::list(item, "unobstructed")?;
     if flags.len() != count {
@@ -208,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_what_is_not_read_is_read() {
+    fn parse_connectivity_accepts_a_file_without_unused_fields() {
         let mut bare = row(2);
         bare[0].as_object_mut().unwrap().remove("visible");
         bare[0]["pose"] = json!([0, 0, 0, 7, 0, 0, 0, 2, 0, 0, 0, 1.6, 0, 0, 0, 1]);
@@ -218,7 +221,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_field_that_is_missing_or_of_another_kind_is_refused_by_name(
+        fn parse_connectivity_names_a_field_that_is_missing_or_of_another_kind(
             count in 1..9_usize, at in any::<prop::sample::Index>(), field in 0..5_usize, is_gone in any::<bool>()
         ) {
             let (mut file, number) = (row(count), at.index(count));

@@ -1,4 +1,4 @@
-//! An episode of a dataset as a [`Path`] through a scene.
+//! Turns an episode of a dataset, a list of viewpoints and perhaps a target object, into a [`Path`] through a scene.
 
 use wayword_core::{
     Frame, Gaze, Heading, Label, Motion, ObjectId, Path, Platform, PlatformError, SceneId, Target, ViewpointId,
@@ -7,7 +7,7 @@ use wayword_core::{
 /// The path of an episode: a frame at each of `viewpoints`, the first one looking along `heading`, with `object` as its
 /// target.
 ///
-/// The platform gives the target's name; where it has none, the path has no target. `told_by` is left empty.
+/// The platform provides the target's name; if it has none, the path has no target. `told_by` is left empty.
 ///
 /// # Errors
 /// When the scene or a viewpoint is unknown, two viewpoints in a row have no edge, or data cannot be read.
@@ -29,7 +29,7 @@ pub fn path_of(
     Ok(Path { id: id.into(), scene: scene.clone(), frames, motion: Motion::Known, target })
 }
 
-/// Everything that is visible from a frame, in the order ahead, right, behind, left.
+/// The labels of all four views around a frame, in the order ahead, right, behind, left.
 ///
 /// # Errors
 /// When the platform cannot give a view from the frame.
@@ -42,7 +42,8 @@ pub fn labels_around(platform: &dyn Platform, scene: &SceneId, frame: &Frame) ->
     Ok(labels)
 }
 
-/// The object that an episode is about, with its name; `None` where the platform has no name for it.
+/// The target of an episode: `object` with its name, as seen from the last frame. `None` if the platform has no name
+/// for it.
 ///
 /// # Errors
 /// When the platform cannot give the name, or a view from the frame.

@@ -1,4 +1,4 @@
-//! Reads third-party files up to a size limit, and says in words what is wrong with them.
+//! Reads third-party files up to a size limit. An error names the file, the problem, and what to do about it (`hint`).
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::{
@@ -13,14 +13,14 @@ const MAX_SIDE_PX: u32 = 6 * 2048;
 /// The most memory that decoding one picture may take, bytes.
 const MAX_DECODED_BYTES: u64 = 256 << 20;
 
-/// An error about a file.
+/// The error for a file that cannot be used.
 #[must_use]
 pub fn wrong(file: &Path, reason: impl Into<String>, hint: &'static str) -> PlatformError {
     PlatformError::File { file: file.to_owned(), reason: reason.into(), hint }
 }
 
-/// Says in words what lies at a path that is not a plain file; `None` for a plain file. Pipes are refused because
-/// opening one waits until another program writes to it.
+/// For a path that is not a plain file, a phrase that describes it, such as "is a folder, not a file"; `None` for a plain
+/// file. Pipes are refused because opening one waits until another program writes to it.
 #[must_use]
 pub fn irregular(about: &Metadata) -> Option<&'static str> {
     if about.is_dir() {
@@ -29,7 +29,7 @@ pub fn irregular(about: &Metadata) -> Option<&'static str> {
     (!about.is_file()).then_some("is a pipe or a device, not a file")
 }
 
-/// The bytes of a file, at most `max_bytes` of them; `None` where there is no such file.
+/// The bytes of a file, at most `max_bytes` of them; `None` if the file does not exist.
 ///
 /// # Errors
 /// When it cannot be read, or is larger.
@@ -48,7 +48,7 @@ pub fn bytes_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result
         return Err(too_large());
     }
     let mut bytes = Vec::new();
-    // It may grow while it is read.
+    // The file may grow while it is read.
     File::open(file).and_then(|file| file.take(max_bytes + 1).read_to_end(&mut bytes)).map_err(failed)?;
     if bytes.len() as u64 > max_bytes { Err(too_large()) } else { Ok(Some(bytes)) }
 }
@@ -87,7 +87,7 @@ fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
 /// Bytes as text, without the byte order mark of UTF-8.
 ///
 /// # Errors
-/// Says in words that the bytes are in another encoding.
+/// A phrase that names the encoding, if it is not UTF-8.
 pub fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err("is text in UTF-16; save it as UTF-8");
@@ -95,7 +95,7 @@ pub fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
     String::from_utf8(without_mark(bytes)).map_err(|_| "is not text in UTF-8")
 }
 
-/// The text of a file, at most `max_bytes` of it; `None` where there is no such file.
+/// The text of a file, at most `max_bytes` of it; `None` if the file does not exist.
 ///
 /// # Errors
 /// When it cannot be read, is larger, or is not UTF-8.
@@ -109,7 +109,7 @@ pub fn text_if_there(file: &Path, max_bytes: u64, hint: &'static str) -> Result<
 /// Decodes a JPEG or PNG file, within limits of size and memory.
 ///
 /// # Errors
-/// Says in words that it is too large, or is not a JPEG or PNG picture.
+/// A phrase about the problem: the picture is too large, or it is no JPEG or PNG picture.
 pub fn picture(bytes: &[u8]) -> Result<Image, String> {
     // Decoders for other formats may be compiled in for other purposes.
     let format =
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_was_taken_upright_stands_upright() {
+    fn decode_picture_applies_the_orientation_of_the_camera() {
         let lying = RgbImage::from_fn(32, 16, |x, _| Rgb([if x < 16 { 250 } else { 5 }; 3]));
         for (orientation, size, top_left) in
             [(1, (32, 16), 250), (6, (16, 32), 250), (8, (16, 32), 5), (3, (32, 16), 5)]
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mark_before_utf_8_is_passed_over_and_utf_16_is_named() {
+    fn decode_utf8_skips_a_byte_order_mark_and_names_utf_16() {
         assert_eq!(read(b"\xef\xbb\xbfx,y"), Ok(Some("x,y".to_owned())));
         assert_eq!(read(b"x,y"), Ok(Some("x,y".to_owned())));
         assert!(read(b"\xff\xfex\0").unwrap_err().contains("UTF-16"));
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_refused() {
+    fn decode_picture_refuses_other_files() {
         assert!(picture(b"GIF89a").unwrap_err().contains("neither PNG nor JPEG"));
         assert!(picture(b"\x89PNG\r\n\x1a\n").unwrap_err().contains("cannot be decoded as a picture"));
     }

@@ -1,4 +1,4 @@
-//! Random paths along a viewpoint graph.
+//! Draws random paths along a viewpoint graph, and a target at the end of each.
 
 use crate::object_names;
 use rand::{Rng, seq::SliceRandom};
@@ -7,11 +7,12 @@ use wayword_core::{
     Heading, Label, Motion, Path, PathRequest, PlatformError, Route, SceneId, Target, ViewpointGraph, ViewpointId, rng,
 };
 
-/// How many ends with nothing visible are skipped before a path without a target is accepted.
+/// How many ends without a visible object are skipped before a path without a target is accepted.
 const MAX_BARE_ENDS: usize = 64;
 
-/// A shortest path between two random viewpoints that fits `request`, with a random start heading (as in REVERIE).
-/// It ends where something is visible, if it can, and has a target there.
+/// Draws a shortest path between two random viewpoints that fits `request`, with a random start heading (as in REVERIE).
+/// If possible, it ends at a viewpoint with a visible object, which becomes its target. `labels_at` gives the objects
+/// that are visible at a viewpoint.
 ///
 /// # Errors
 /// When no two viewpoints are as far apart as `request` asks, or `labels_at` fails.
@@ -59,6 +60,7 @@ pub fn path(
     }
 }
 
+/// The path along a route, with its frames and its name.
 fn walked(
     scene: &SceneId,
     graph: &ViewpointGraph,
@@ -74,8 +76,8 @@ fn walked(
     Ok(Path { id: format!("{scene}_{start}_{seed}"), scene: scene.clone(), frames, motion: Motion::Known, target })
 }
 
-/// One of the visible objects. Furnishings come before parts of the building, and then objects without a namesake
-/// before others.
+/// Chooses one of the visible objects at random. Furnishings come before parts of the building, and then objects that no
+/// other visible object shares its name with come before the rest.
 pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     let has_namesake = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() > 1;
     let rank = |label: &Label| (!object_names::is_furnishing(&label.name), has_namesake(label));
@@ -93,7 +95,7 @@ pub fn target(labels: &[Label], rng: &mut impl Rng) -> Option<Target> {
     })
 }
 
-/// A request for a path, in words.
+/// Describes a request for a path, for an error message.
 #[must_use]
 pub fn in_words(request: &PathRequest) -> String {
     let (hops, length_m) = (&request.hops, &request.length_m);
@@ -173,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_in_words() {
+    fn error_describes_a_request_that_no_path_fits() {
         let request = PathRequest { hops: 40..=50, length_m: 5.0..=9.0 };
         let error = path(&scene(), &line(6), &request, 1, |_| Ok(Vec::new())).unwrap_err().to_string();
         assert!(error.contains("40 to 50 hops and 5 to 9 metres"), "{error}");

@@ -1,20 +1,21 @@
-//! Shortest ways over the cells of a grid: A* with whole numbers, then without the places that a straight walk can
-//! skip.
+//! Finds shortest ways over the cells of a grid with A*, and removes the places that a straight walk can skip.
 //!
-//! The caller decides what the cells are, how they are numbered and where one can stand. So storeys in layers are
-//! searched like a flat floor. The same grid gives the same way on every machine.
+//! The caller decides what a cell is, how cells are numbered and where a walker can stand. So a house of several
+//! storeys, each a layer of cells, is searched like one flat floor. Lengths are whole numbers, so the same grid gives
+//! the same way on every machine.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-/// From a cell to those around it, as columns and rows: straight steps, then diagonal ones.
+/// Offsets, in columns and rows, from a cell to the eight around it: straight steps first, then diagonal ones.
 pub const STEPS: [(i32, i32); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
-/// Lengths in thousandths of a cell, so that sums are exact.
+/// Lengths of steps in thousandths of a cell, as whole numbers, so that sums are exact.
 const STRAIGHT: u64 = 1000;
 const DIAGONAL: u64 = 1414;
 
-/// The cells around one, with the length of the step to each. `free` gets a number of columns and rows and gives the
-/// cell that lies so far away, if one can stand there. No corner is cut: a diagonal step needs both cells beside it.
+/// The free cells around a cell, with the length of the step to each. `free` turns an offset in columns and rows into
+/// the cell at that offset, or into `None` if a walker cannot stand there. A diagonal step cuts no corner: the two cells
+/// that it passes must be free too.
 pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item = (C, u64)> {
     STEPS.into_iter().filter_map(move |(dx, dy)| {
         if dx == 0 || dy == 0 {
@@ -25,15 +26,16 @@ pub fn around<C>(free: impl Fn((i32, i32)) -> Option<C>) -> impl Iterator<Item =
     })
 }
 
-/// The least length of a way between cells this many columns and rows apart: its length over free ground.
+/// A lower bound of the length of a way between two cells: its length if all ground between them were free. `columns` and
+/// `rows` are their distances.
 #[must_use]
 pub fn at_least(columns: u64, rows: u64) -> u64 {
     STRAIGHT * columns.max(rows) + (DIAGONAL - STRAIGHT) * columns.min(rows)
 }
 
-/// A shortest way between two of `count` cells, with both ends; `None` where there is none. `left` gives a lower bound
-/// of the length from a cell to the goal. `steps` gives the cells that can be reached from one, with the length of each
-/// step. If several ways have the same length, the result is always the same one.
+/// A shortest way between two of `count` cells, both ends included; `None` if there is none. `left` gives a lower bound
+/// of the length from a cell to the goal (the heuristic of A*). `steps` gives the cells that can be reached from a cell,
+/// with the length of each step. If several ways have the same length, the result is always the same one.
 pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
     count: usize,
     start: usize,
@@ -53,7 +55,7 @@ pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
             return Some(way);
         }
         let length = best[cell];
-        // A shorter way to this cell was found in the meantime.
+        // This entry of the queue is out of date: a shorter way to the cell was found after it was added.
         if estimate > length + left(cell) {
             continue;
         }
@@ -67,7 +69,8 @@ pub fn shortest<S: IntoIterator<Item = (usize, u64)>>(
     None
 }
 
-/// The places of a way without those that a straight walk can skip.
+/// Removes the places of a way that a straight walk can skip: from each place, the way goes on to the last one that
+/// `is_straight` allows.
 pub fn taut<P: Copy>(places: &[P], is_straight: impl Fn(P, P) -> bool) -> Vec<P> {
     let mut kept = Vec::from_iter(places.first().copied());
     let mut at = 0;
@@ -83,7 +86,7 @@ pub fn taut<P: Copy>(places: &[P], is_straight: impl Fn(P, P) -> bool) -> Vec<P>
 mod tests {
     use super::*;
 
-    /// A way over a drawing from `a` to `b`, and its length.
+    /// The shortest way from `a` to `b` over a drawing in which `#` is blocked, and its length.
     fn way(drawing: &[&str]) -> Option<(Vec<usize>, u64)> {
         let columns = drawing[0].len();
         let cells = drawing.concat().into_bytes();
@@ -124,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_straight_walk_can_skip_is_left_out() {
+    fn pull_taut_leaves_out_places_that_a_straight_walk_skips() {
         let straight = |a: i32, b: i32| a / 10 == b / 10;
         assert_eq!(taut(&[1, 3, 5, 11, 14, 21], straight), [1, 5, 11, 14, 21]);
         assert_eq!(taut(&[7], straight), [7]);

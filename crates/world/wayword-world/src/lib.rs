@@ -1,14 +1,17 @@
 //! Code that all platforms share.
 //!
-//! [`files`] reads third-party files up to a size limit. [`said`] does the same for the output of a child process or a
-//! socket. [`wander`] makes random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
-//! finds shortest ways over a grid, and [`episode_path`] turns an episode of a dataset into a path.
-//! [`seen_from`](mod@seen_from) finds the viewpoints that show an object. [`object_names`] and [`region`] put the names
-//! and letters of Matterport3D's annotators, which other scenes have too, into everyday words. [`survey`](mod@survey) gathers
-//! what is known of all viewpoints of a scene. [`connectivity`] reads viewpoint graphs in Matterport's format, [`levels`] finds
-//! their storeys, and [`values`] takes values out of JSON.
+//! Reading: [`files`] reads third-party files up to a size limit, and [`said`] reads the output of a child process or a
+//! socket in the same way. [`connectivity`] reads viewpoint graphs in Matterport's format, and [`values`] takes values
+//! out of JSON.
 //!
-//! Architecture invariant: nothing here depends on a single platform.
+//! Paths: [`wander`] draws random paths over open ground, and [`graph_walk`] along a viewpoint graph. [`grid_search`]
+//! finds shortest ways over a grid. [`episode_path`] turns an episode of a dataset into a path.
+//!
+//! Scenes: [`survey`](mod@survey) collects the rooms and objects at all viewpoints, and [`seen_from`](mod@seen_from)
+//! finds the viewpoints that show an object. [`levels`] finds the storeys of viewpoints. [`object_names`] and [`region`]
+//! turn the names and letters of Matterport3D's annotators, which other scenes use too, into everyday words.
+//!
+//! Architecture invariant: no code here depends on a single platform.
 
 pub mod connectivity;
 pub mod episode_path;

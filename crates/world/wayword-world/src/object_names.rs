@@ -1,6 +1,6 @@
 //! Turns annotators' names of objects into everyday words.
 
-/// Spelling mistakes of the annotators, and what they meant. Only mistakes that leave no doubt are listed.
+/// Spelling mistakes of the annotators, each with the intended word. Only mistakes that leave no doubt are listed.
 const SLIPS: &[(&str, &str)] = &[
     ("baracade", "barricade"),
     ("bathtab", "bathtub"),
@@ -87,13 +87,14 @@ const NO_ERRAND: &[&str] = &[
     "wall",
 ];
 
-/// Longest name that is kept, in characters.
+/// Longest name, in characters; the rest is cut off.
 const MAX_CHARS: usize = 60;
 
-/// A name as people would write it. `#` becomes a space. Remarks on where the object really is ("/ other room") and
-/// stray marks are removed, and spelling mistakes are corrected. `None` where nothing is left.
+/// Turns an annotator's name into words as people would write them: `bathroom##sink` becomes "bathroom sink". `#` becomes
+/// a space. Stray marks are removed, as are remarks that the object is really elsewhere ("/ other room"), and spelling
+/// mistakes are corrected. `None` if no letter is left.
 ///
-/// Of two names joined by a slash with spaces around it, the first is kept; without spaces ("stand/table"), the second.
+/// Of two names joined by a slash with spaces around it, the first is used; without spaces ("stand/table"), the second.
 #[must_use]
 pub fn plain(raw: &str) -> Option<String> {
     let spaced: String = raw.chars().take(4 * MAX_CHARS).map(|c| if c == '#' || c == '_' { ' ' } else { c }).collect();
@@ -114,6 +115,7 @@ pub fn plain(raw: &str) -> Option<String> {
     name.chars().any(char::is_alphabetic).then(|| name.trim().to_owned())
 }
 
+/// Chooses between two names that are joined by a slash or a backslash.
 fn one_of_two(name: &str) -> &str {
     let Some((first, second)) = name.split_once(['/', '\\']) else {
         return name;
@@ -122,11 +124,13 @@ fn one_of_two(name: &str) -> &str {
     if is_remark && !first.trim().is_empty() { first } else { second }
 }
 
+/// The intended word for one of the listed spelling mistakes; any other word as it is.
 fn mended(word: &str) -> &str {
     SLIPS.iter().find(|(slip, _)| *slip == word).map_or(word, |(_, meant)| meant)
 }
 
-/// Whether a task can be about an object with this plain name.
+/// Whether the object of this plain name is a furnishing, about which a person can be given a task, and not a part of the
+/// building.
 #[must_use]
 pub fn is_furnishing(name: &str) -> bool {
     !name.split(' ').any(|word| NO_ERRAND.contains(&word))
@@ -175,7 +179,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_plain_name_is_plain_and_stays_so(raw in "\\PC{0,300}") {
+        fn plain_name_leaves_no_odd_characters(raw in "\\PC{0,300}") {
             if let Some(name) = plain(&raw) {
                 prop_assert!(!name.contains(['#', '/', '\\', ';', '\n']) && !name.contains("  "));
                 prop_assert!(name.chars().count() <= MAX_CHARS);

@@ -1,7 +1,7 @@
-//! The letters by which Matterport3D labels regions, as rooms (`house_segmentations`, data organisation, "region
-//! labels").
+//! Turns the letter that Matterport3D gives to each region of a building into the name of a room. The letters are listed
+//! in the dataset's description of its files (`house_segmentations`, data organisation, "region labels").
 
-/// The everyday word for a region's letter; `None` where it is not a room that a person would name.
+/// The everyday word for a region's letter; `None` if the letter does not stand for a room that a person would name.
 #[must_use]
 pub fn room(letter: char) -> Option<&'static str> {
     Some(match letter {

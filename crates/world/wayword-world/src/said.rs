@@ -5,16 +5,16 @@ use std::{
     sync::Arc,
 };
 
-/// Called with each line that a platform reports beside its answers, such as what a world program prints, without
-/// control characters.
+/// Receives each line that a platform prints in addition to its answers, for example the error output of a world program.
+/// The lines have no control characters.
 pub type Hear = Arc<dyn Fn(&str) + Send + Sync>;
 
-/// What came out of a pipe.
+/// The outcome of reading one line from a pipe.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Line {
     /// A line without its end.
     Whole(Vec<u8>),
-    /// Bytes, and then the pipe's end.
+    /// Bytes without the end of a line, because the pipe ended.
     Half(Vec<u8>),
     /// A line that is longer than the limit.
     TooLong,
@@ -22,7 +22,7 @@ pub enum Line {
     End,
 }
 
-/// The next line. It is given up when it has more than `max_bytes`.
+/// Reads the next line, up to `max_bytes` of it.
 #[must_use]
 pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
     let mut line = Vec::new();
@@ -40,8 +40,8 @@ pub fn read_line(from: &mut impl BufRead, max_bytes: usize) -> Line {
     }
 }
 
-/// Whether a character changes a terminal or the text around it without being seen: it moves the cursor, changes the
-/// direction of writing, or has no width. The two joiners have no width either, but they are kept, because words of
+/// Whether a character is invisible and yet changes a terminal or the text around it: it moves the cursor, changes the
+/// direction of writing, or has no width. The two joiners are an exception: they have no width either, but words of
 /// Hindi, Telugu or Persian need them.
 #[must_use]
 pub fn is_unseen(c: char) -> bool {
@@ -66,13 +66,13 @@ mod tests {
     use std::io::Cursor;
 
     #[test]
-    fn what_a_world_says_turns_nothing_round_and_hides_nothing() {
+    fn to_safe_text_removes_characters_that_reverse_or_hide_text() {
         assert_eq!(plain("a\u{202e}b\u{200b}c\u{1b}[31m\u{2066}d\u{feff}", 100), "abc[31md");
         assert_eq!(plain("Stra\u{df}e \u{4e2d} \u{627}", 100), "Stra\u{df}e \u{4e2d} \u{627}");
     }
 
     #[test]
-    fn joiners_stay_which_words_of_many_languages_need() {
+    fn to_safe_text_keeps_joiners_for_words_that_need_them() {
         // Persian "I want" and a Hindi half letter.
         for word in ["\u{645}\u{6cc}\u{200c}\u{62e}\u{648}\u{627}\u{647}\u{645}", "\u{915}\u{94d}\u{200d}\u{937}"] {
             assert_eq!(plain(word, 100), word);
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_cut_at_their_bound_and_half_lines_are_told_from_whole_ones() {
+    fn read_line_stops_at_its_limit_and_reports_half_lines() {
         let mut pipe = Cursor::new(b"one\n\ntwelve chars\nhalf".to_vec());
         assert_eq!(read_line(&mut pipe, 12), Line::Whole(b"one".to_vec()));
         assert_eq!(read_line(&mut pipe, 12), Line::Whole(Vec::new()));

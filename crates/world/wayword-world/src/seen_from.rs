@@ -1,4 +1,4 @@
-//! Which viewpoints each object is seen from.
+//! Finds the viewpoints from which each object of a scene is visible.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -6,9 +6,9 @@ use std::{
 };
 use wayword_core::{DVec3, Heading, Label, ObjectId, PlatformError, ViewpointGraph, ViewpointId};
 
-/// The viewpoints from which each object is seen. `labels_around` gives what four views show around an eye, the first of them along
-/// a heading. It is called for two headings, half a view apart, because two views can share an object so that neither shows enough of
-/// it.
+/// The viewpoints from which each object is visible. `labels_around` gives the labels of the four views around an eye, the
+/// first of them along a heading. It is called for two headings that are half a view apart: an object on the border of two
+/// views may show too little of itself in either to be labelled.
 ///
 /// # Errors
 /// When `labels_around` fails.
@@ -34,7 +34,7 @@ mod tests {
 
     /// Two of the first four views share an object, and neither shows enough of it for a label.
     #[test]
-    fn an_object_on_the_border_of_two_views_is_seen() {
+    fn an_object_on_the_border_of_two_views_is_visible() {
         let viewpoint = ViewpointId::new("hall").unwrap();
         let mut graph = ViewpointGraph::default();
         graph.add(viewpoint.clone(), DVec3::ZERO, None).unwrap();

@@ -1,4 +1,4 @@
-//! What a platform knows of all viewpoints of a scene.
+//! Collects the rooms and objects that a platform knows at all viewpoints of a scene.
 
 use wayword_core::{
     DVec3, Frame, Gaze, Heading, Platform, PlatformError, Pose, SceneId, Survey, ViewpointId, survey::Known,
@@ -35,7 +35,7 @@ pub fn survey(platform: &dyn Platform, scene: &SceneId) -> Result<Survey, Platfo
     Ok(survey.with_objects(platform.listed_objects(scene)?))
 }
 
-/// Why a survey failed.
+/// Why a survey failed: the two kinds of error that can occur while viewpoints are visited.
 enum Trouble {
     Platform(PlatformError),
     Graph(wayword_core::graph::GraphError),

@@ -1,14 +1,15 @@
-//! Takes values out of JSON that comes from outside, and says in words what is wrong with them.
+//! Takes values out of JSON that comes from outside. Every error is a phrase that names the field and the problem, for a
+//! message to the user.
 
 use serde_json::Value;
 
 /// Largest absolute value of a coordinate in a building, metres.
 const MAX_COORDINATE_M: f64 = 1e6;
 
-/// A finite coordinate of plausible size, or what is wrong with it, in words.
+/// Returns the coordinate if it is finite and of plausible size.
 ///
 /// # Errors
-/// When it is not.
+/// When it is not finite, or too large for a building.
 pub fn coordinate(number: f64) -> Result<f64, String> {
     if number.is_finite() && number.abs() <= MAX_COORDINATE_M {
         Ok(number)
@@ -43,7 +44,7 @@ pub fn text<'a>(item: &'a Value, name: &str) -> Result<&'a str, String> {
     found.as_str().ok_or_else(|| format!("field `{name}` is {}, not a text", kind(found)))
 }
 
-/// A flag.
+/// A value that is true or false. `name` is the field that errors name.
 ///
 /// # Errors
 /// When it is neither true nor false.
@@ -51,7 +52,7 @@ pub fn flag(value: &Value, name: &str) -> Result<bool, String> {
     value.as_bool().ok_or_else(|| format!("field `{name}` holds {}, not true or false", kind(value)))
 }
 
-/// A coordinate.
+/// A value that is a coordinate, metres. `name` is the field that errors name.
 ///
 /// # Errors
 /// When it is no number, or not a plausible coordinate.

@@ -1,36 +1,39 @@
-//! Random paths through scenes with open ground, where paths have a length but no hops.
+//! Draws random paths through scenes with open ground: there one can walk anywhere, so a path has a length but no hops.
 
 use wayword_core::{DVec3, Frame, Motion, Path, PathRequest, PlatformError, SceneId, Target, path::Stop};
 
-/// How many pairs of places are tried.
+/// How many pairs of places are tried before the search gives up.
 const TRIES: usize = 400;
 /// How many ends without a visible target are skipped before one is accepted.
 const MAX_BARE_ENDS: usize = 12;
 
-/// A scene with open ground, and the random choices of a path through it.
+/// A scene with open ground. It makes the random choices of a path: its ends, its stops and its target.
 pub trait Wander {
-    /// Two random places; `None` where there is no ground.
+    /// Two random places for the ends of a path; `None` if the scene has no ground.
     fn ends(&mut self) -> Option<(DVec3, DVec3)>;
 
-    /// Where frames are taken along the shortest way from one to the other; `None` where there is none.
+    /// The places of frames along the shortest way between two places; `None` if no way joins them.
     ///
     /// # Errors
     /// When the platform cannot answer.
     fn stops(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<Stop>>, PlatformError>;
 
-    /// A target for a path that ends at `last`.
+    /// A target for a path that ends at `last`; `None` if no suitable object is visible there.
     ///
     /// # Errors
     /// When the platform cannot give a view.
     fn target(&mut self, last: &Frame) -> Result<Option<Target>, PlatformError>;
 
-    /// Whether the scene has known objects at all. Without them, looking for a target is useless.
+    /// Whether the objects of the scene are known at all. Without them, the search for a target is useless.
     fn knows_objects(&self) -> bool {
         true
     }
 }
 
-/// A path whose length fits `request`, with a target where one is found; `None` where the program finds no such path.
+/// Draws a path of a length that `request` allows; `None` if none is found.
+///
+/// Random pairs of places are tried in turn, and the first path with a target is taken. After a dozen paths of the right
+/// length without a target, the first of them is taken as it is.
 ///
 /// # Errors
 /// When the platform cannot answer.
@@ -67,7 +70,7 @@ pub fn wander(
     Ok(bare)
 }
 
-/// The error that no path of the requested length was found.
+/// The error for a request that no path was found for.
 #[must_use]
 pub fn no_such_walk(scene: &SceneId, request: &PathRequest) -> PlatformError {
     let request = format!("{} to {} metres", request.length_m.start(), request.length_m.end());
@@ -79,8 +82,8 @@ mod tests {
     use super::*;
     use wayword_core::ObjectId;
 
-    /// A scene on a line: each pair of ends lies one metre farther apart than the one before, and an object stands
-    /// where `seen` says so.
+    /// A scene on a line: each pair of ends lies one metre farther apart than the pair before. A path has a target if `seen`
+    /// is true for its end in metres. No way leads to the place at 3 metres.
     struct Line {
         tried: usize,
         seen: fn(usize) -> bool,
@@ -124,21 +127,21 @@ mod tests {
     }
 
     #[test]
-    fn the_first_walk_of_that_length_with_something_at_its_end_is_taken() {
+    fn sample_open_path_takes_the_first_path_of_the_length_with_a_target() {
         assert_eq!(walked(|_| true, true, 2.0..=9.0), Some((2.0, true)));
         assert_eq!(walked(|at| at > 4, true, 2.0..=9.0), Some((5.0, true)));
         assert_eq!(walked(|_| true, true, 3.0..=9.0), Some((4.0, true)), "no way is three metres long");
     }
 
     #[test]
-    fn where_nothing_is_to_be_seen_the_first_walk_is_taken_without_a_target() {
+    fn sample_open_path_takes_the_first_path_if_no_target_is_visible() {
         assert_eq!(walked(|_| false, true, 2.0..=90.0), Some((2.0, false)));
         assert_eq!(walked(|at| at > 60, true, 2.0..=90.0), Some((2.0, false)), "the search must end");
         assert_eq!(walked(|at| at > 4, false, 2.0..=9.0), Some((2.0, false)), "the objects are not known");
     }
 
     #[test]
-    fn where_no_walk_is_of_that_length_there_is_none() {
+    fn sample_open_path_finds_no_path_if_none_has_the_length() {
         assert_eq!(walked(|_| true, true, 3.0..=3.0), None);
     }
 }
