@@ -1,4 +1,4 @@
-//! The kinds of furniture in a house: names, usual sizes, colours and materials.
+//! The catalogue of furniture: each kind's name, usual size, colours and material.
 
 use super::{colour::Colour, dice::Dice};
 use Colour as C;

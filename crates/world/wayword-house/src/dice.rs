@@ -1,13 +1,15 @@
-//! Seeded choices that are the same on every machine.
+//! Random choices from a seed, the same on every machine.
 
 use rand_chacha::{ChaCha8Rng, rand_core::RngCore};
 
-/// Draws integers only, so that the result depends neither on the machine's word size nor on its mathematics library.
+/// A random number generator that draws integers only, so that the result depends neither on the machine's word size nor
+/// on its mathematics library.
 #[derive(Debug)]
 pub(crate) struct Dice(ChaCha8Rng);
 
 impl Dice {
-    /// Dice for one purpose within a house.
+    /// The generator for one purpose within a house. Each purpose has its own, so that a change in one part of a house leaves
+    /// the other parts as they were.
     pub(crate) fn new(seed: u64, purpose: &[&str]) -> Self {
         Self(wayword_core::rng(seed, purpose))
     }

@@ -1,4 +1,4 @@
-//! A house as meshes with materials, textures and baked light.
+//! Turns a house into meshes with materials, textures and baked light, for the renderer and for glTF files.
 
 use super::{
     light::{Factors, Grain, RoomLight, cut},
@@ -14,24 +14,24 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
 
-/// Floors and walls show the shadows.
+/// How finely floors, walls and ceilings are cut: finely, because shadows fall on them.
 const SHELL: Grain = Grain { finest_m: 0.055, widest_m: 0.7 };
-/// So do rugs and mats, which lie on floors.
+/// How finely rugs and mats are cut; shadows fall on them too.
 const FLAT: Grain = Grain { finest_m: 0.055, widest_m: 0.25 };
-/// Everything else.
+/// How finely everything else is cut.
 const THING: Grain = Grain { finest_m: 0.13, widest_m: 0.7 };
 /// How far a door's frame reaches to both sides of the wall's middle, metres.
 const FRAME_M: f32 = 0.08;
 
-/// Everything that a renderer or a file format needs.
+/// A whole house as a renderer or a file format needs it.
 pub(super) struct Drawing {
     pub(super) meshes: Vec<Mesh>,
     pub(super) materials: Vec<Material>,
     pub(super) textures: Vec<Texture>,
 }
 
-/// The surfaces of everything in a house, world frame, metres. They are not cut where the light changes, so they are
-/// fewer than in a picture.
+/// The surfaces of everything in a house, world frame, metres, for their geometry alone. They are not cut where the light
+/// changes, so there are fewer triangles than for a picture.
 #[must_use]
 pub fn surfaces(house: &House) -> Vec<Mesh> {
     collect(house, Collector::default()).meshes
@@ -42,6 +42,7 @@ pub(super) fn draw(house: &House) -> Drawing {
     collect(house, Collector { cuts: true, ..Collector::default() })
 }
 
+/// Builds every part of a house, lights it by its room, and adds it to the meshes.
 fn collect(house: &House, mut drawing: Collector) -> Drawing {
     let lights: Vec<_> = (0..house.rooms.len()).map(|index| RoomLight::of(house, index)).collect();
     for (index, light) in lights.iter().enumerate() {
@@ -107,6 +108,7 @@ fn standing(piece: &Furniture) -> Shape {
     shape
 }
 
+/// Gathers meshes, and gives surfaces that look alike the same material.
 #[derive(Default)]
 struct Collector {
     /// Whether surfaces are cut where the light changes.

@@ -1,4 +1,7 @@
-//! The viewpoint graph of a house, made from its walkable ground.
+//! Makes the viewpoint graph of a house from its walkable ground.
+//!
+//! Viewpoints are placed in this order: in openings and on stairs, in the most open spot of every room, then wherever
+//! there is still space. Parts of the graph that are not joined then get viewpoints along the shortest way between them.
 
 use super::{
     ground::{Cell, Ground},
@@ -31,6 +34,7 @@ pub fn viewpoint_graph(house: &House, ground: &Ground) -> Result<ViewpointGraph,
     map.into_graph(&edges)
 }
 
+/// The graph while it is being made: a cell of the ground and its place for each viewpoint.
 struct RoadMap<'a> {
     ground: &'a Ground,
     nodes: Vec<(Cell, DVec3)>,
@@ -104,6 +108,7 @@ impl RoadMap<'_> {
         }
     }
 
+    /// Pairs of near viewpoints between which one can walk straight.
     fn edges(&self) -> Vec<(usize, usize)> {
         let mut edges = Vec::new();
         for (a, (from, place)) in self.nodes.iter().enumerate() {
@@ -116,7 +121,7 @@ impl RoadMap<'_> {
         edges
     }
 
-    /// Joins parts that are still apart, with viewpoints at the corners of the shortest way between them.
+    /// Joins parts of the graph that are not connected, with viewpoints at the corners of the shortest way between them.
     fn connect(&mut self, edges: &mut Vec<(usize, usize)>) {
         loop {
             let parts = self.parts(edges);
@@ -152,7 +157,7 @@ impl RoadMap<'_> {
         edges.push((before, b));
     }
 
-    /// The part to which each node belongs.
+    /// The connected part to which each viewpoint belongs.
     fn parts(&self, edges: &[(usize, usize)]) -> Vec<usize> {
         let mut part: Vec<usize> = (0..self.nodes.len()).collect();
         let mut changed = true;

@@ -1,4 +1,5 @@
-//! The house of a seed, with its scene, its ground and its viewpoint graph.
+//! Generates the house of a seed, and prepares it for use: its scene for drawing, its walkable ground and its viewpoint
+//! graph.
 
 use super::{
     furnish::furnish,
@@ -21,10 +22,10 @@ use wayword_core::{
 use wayword_render::Camera;
 use wayword_world::seen_from;
 
-/// An eye within this distance of the middle line of a wall stands in the opening, centimetres.
+/// An eye in an opening is at most this far from the middle line of the wall, centimetres.
 const THRESHOLD_CM: i32 = 25;
 
-/// The house of a seed: the same on every machine.
+/// Generates the house of a seed. It is the same on every machine.
 #[must_use]
 pub fn generate(seed: u64) -> House {
     let layout = lay_out(seed);
@@ -80,7 +81,7 @@ impl Home {
         Ok(View::new(pose, gaze.horizontal_fov_rad, image, Some(truth)))
     }
 
-    /// How far away is what the view from a pose shows.
+    /// The depths of the view from a pose, as it fills a picture of this size in pixels.
     pub(super) fn depth(&self, pose: Pose, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
         let picture =
             self.scene.ids(&Camera::level(pose.position, gaze, size)).map_err(|error| self.refused(&error))?;
@@ -97,13 +98,13 @@ impl Home {
         Some(room.kind.word().to_owned())
     }
 
-    /// The room in which an eye is. If the eye stands in an opening, it is the room into which it looks.
+    /// The room in which an eye is. For an eye in an opening, this is the room into which it looks.
     pub(super) fn room_seen(&self, eye: DVec3, heading: Heading) -> Option<String> {
         let ahead = DVec3::new(libm::sin(heading.rad()), libm::cos(heading.rad()), 0.0) * 0.5;
         self.is_in_opening(eye).then(|| self.room_name(eye + ahead)).flatten().or_else(|| self.room_name(eye))
     }
 
-    /// Whether an eye stands in an opening between two rooms.
+    /// Whether an eye is in an opening between two rooms.
     pub(super) fn is_in_opening(&self, eye: DVec3) -> bool {
         let floor_cm = (eye.z - EYE_M) * 100.0;
         let stands_in = |opening: &Opening| {
@@ -123,8 +124,8 @@ impl Home {
         Ok(all)
     }
 
-    /// No shortest way is longer than this: the largest distance between two viewpoints over the graph, whose edges are
-    /// straight and can be walked. So a path that is too long for the house is refused without a search.
+    /// The largest distance between two viewpoints along the graph. Since the graph's edges can be walked, no shortest way is
+    /// longer. So a request for a path that is too long for the house is refused without a search.
     pub(super) fn longest_m(&self) -> f64 {
         *self.longest_m.get_or_init(|| {
             let from = |id| self.graph.distances_from(id).unwrap_or_default();
@@ -145,7 +146,8 @@ impl Home {
     /// Refuses poses outside the house.
     pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
-        // A low camera is within its room, and has no room at a person's feet.
+        // `room_name` takes the eye to be at a person's height. A low camera would be below the floor then, so it is also
+        // looked for at its own height.
         let is_within = || self.scene.house.room_at(eye.x, eye.y, eye.z).is_some();
         if eye.is_finite() && (self.room_name(eye).is_some() || is_within()) {
             return Ok(());
@@ -160,6 +162,7 @@ impl Home {
     }
 }
 
+/// The error for a name that no house of this version has.
 pub(super) fn unknown(scene: &str) -> PlatformError {
     let hint = match old_seed_of(scene) {
         Some(seed) => format!(

@@ -1,4 +1,4 @@
-//! Labels of what is visible in a picture, found from its pixels.
+//! Finds the labels of a view from its pixels: each pixel carries the number of the object that it shows.
 
 use super::{
     objects::{Object, Role},
@@ -7,10 +7,10 @@ use super::{
 use wayword_core::{Gaze, Heading, Label, ObjectId};
 use wayword_render::{Camera, Picture, Visible, box_corners, evident_objects};
 
-/// Labels of what is visible, largest first: furniture, doors, windows and stairs. The middle of an object's box must
-/// lie within the gaze.
+/// Labels of the visible furniture, doors, windows and stairs, the largest first. The middle of an object's box must lie
+/// within the gaze.
 ///
-/// An object that is hidden behind others, or of which only a sliver shows, gets no label.
+/// An object that is hidden behind others, or that shows only a sliver of itself, gets no label.
 pub(super) fn labels(scene: &HouseScene, camera: &Camera, gaze: Gaze, picture: &Picture) -> Vec<Label> {
     let seen = evident_objects(picture);
     let told = seen.iter().filter_map(|each| {
@@ -54,7 +54,7 @@ mod tests {
         labels(&scene, &camera, gaze, &picture).into_iter().map(|label| label.name).collect()
     }
 
-    /// A house whose only piece is a refrigerator in the middle of its living room, seen from the south.
+    /// A house with a refrigerator in the middle of its living room and no other furniture, and an eye south of it.
     fn refrigerator_alone() -> (House, DVec3) {
         let mut house = generate(1);
         let room = house.furniture.iter().find(|piece| piece.kind == FurnitureKind::Sofa).unwrap().room;
@@ -68,14 +68,14 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_view_is_labelled_and_what_is_behind_the_eye_is_not() {
+    fn labels_name_objects_in_view_and_none_behind_the_eye() {
         let (house, eye) = refrigerator_alone();
         assert!(names(house.clone(), eye, 0.0).contains(&"refrigerator".to_owned()));
         assert!(!names(house, eye, std::f64::consts::PI).contains(&"refrigerator".to_owned()));
     }
 
     #[test]
-    fn what_is_hidden_has_no_label() {
+    fn labels_leave_out_hidden_objects() {
         let (mut house, eye) = refrigerator_alone();
         let mut vase = house.furniture[0].clone();
         (vase.kind, vase.name, vase.id) = (FurnitureKind::Vase, "vase".into(), vase.id + 1);

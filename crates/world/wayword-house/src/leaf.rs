@@ -1,4 +1,4 @@
-//! The leaf of a door that stands open, at any angle.
+//! The geometry of an open door's leaf, at any angle to its wall.
 
 use super::{
     model::{HALF_WALL_CM, LEAF_CM, Leaf, Opening, Room},
@@ -7,7 +7,7 @@ use super::{
 
 /// Distance between two of the squares that cover a leaf on the floor, centimetres.
 const STEP_CM: i32 = 6;
-/// Half the side of such a square: it holds the leaf's thickness at any angle.
+/// Half the side of each of these squares: large enough for the leaf's thickness at any angle.
 const HALF_SQUARE_CM: i32 = 4;
 
 /// Where a leaf hangs and which way it points, world frame, centimetres. The two directions have length 1.
@@ -24,7 +24,7 @@ pub(super) struct OpenLeaf {
 }
 
 impl OpenLeaf {
-    /// The leaf of an opening; `None` where no leaf stands open.
+    /// The open leaf of an opening; `None` if it has none.
     pub(super) fn of(opening: &Opening, rooms: &[Room]) -> Option<Self> {
         let Leaf::Open { into, hinge_low, angle_deg } = opening.leaf else {
             return None;
@@ -49,7 +49,7 @@ impl OpenLeaf {
         })
     }
 
-    /// Squares of floor that together hold the leaf.
+    /// Squares of floor that together cover the leaf.
     pub(super) fn footprint(&self) -> Vec<RectCm> {
         let place = |far: i32| {
             let on = |hinge: f64, along: f64, through: f64| {
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn doors_stand_at_many_angles_and_their_leaves_stay_in_their_rooms() {
+    fn doors_open_at_many_angles_and_leaves_stay_in_their_rooms() {
         let mut angles = std::collections::BTreeSet::new();
         for house in (0..30).map(generate) {
             for (opening, leaf, angle_deg) in open_doors(&house) {
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_walks_through_a_leaf_and_everybody_through_its_door() {
+    fn open_leaves_block_the_ground_and_their_doors_do_not() {
         for house in (0..12).map(generate) {
             let ground = Ground::of(&house);
             for (opening, leaf, _) in open_doors(&house) {

@@ -1,4 +1,8 @@
-//! The built-in platform: whole homes from a seed.
+//! The built-in platform: whole homes that are generated from a seed.
+//!
+//! The steps, in order: `layout` plans rooms, doors and windows, `furnish` fills the rooms, `structure` and `shapes` build
+//! the meshes, `light` bakes light into them, and `drawing` puts everything together. `ground` and `graph` find where one
+//! can walk, and `platform` offers all of it to the rest of Wayword. `save` writes a house for other programs.
 
 mod catalogue;
 mod colour;

@@ -1,4 +1,4 @@
-//! The parts of a house.
+//! The data model of a house: rooms, openings, windows, stairs and furniture. Everything else is computed from it.
 
 use super::{
     catalogue::FurnitureKind,
@@ -33,7 +33,7 @@ pub struct House {
     pub windows: Vec<Window>,
     /// The stairs, in houses with two storeys.
     pub stairs: Option<Stairs>,
-    /// Everything that stands, lies or hangs in it.
+    /// All furniture, also what lies on floors or hangs on walls.
     pub furniture: Vec<Furniture>,
 }
 
@@ -114,9 +114,9 @@ pub struct Opening {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leaf {
-    /// Nothing: a doorway.
+    /// No leaf: a doorway.
     None,
-    /// A door that stands open into a room, hinged at the span's lower or upper end.
+    /// A door that is open into a room, hinged at the span's lower or upper end.
     Open {
         /// Index of the room it opens into.
         into: usize,
@@ -165,7 +165,7 @@ pub struct Stairs {
     pub flight_cm: i32,
 }
 
-/// Something that stands, lies or hangs in a room.
+/// A piece of furniture or decoration: on the floor, on a wall, on the ceiling or on another piece.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Furniture {
     /// Its number among all objects of the house.
@@ -220,7 +220,7 @@ impl Room {
         self.floor as i32 * STOREY_CM
     }
 
-    /// What lies between its walls.
+    /// The area between its walls.
     #[must_use]
     pub fn inner(&self) -> RectCm {
         self.outline.inset(HALF_WALL_CM)
@@ -245,7 +245,7 @@ impl Opening {
         }
     }
 
-    /// Squares of floor that together hold a leaf that stands open; none where no leaf does.
+    /// Squares of floor that together cover the open leaf; none if no leaf is open.
     #[must_use]
     pub fn open_leaf(&self, rooms: &[Room]) -> Vec<RectCm> {
         OpenLeaf::of(self, rooms).map_or_else(Vec::new, |leaf| leaf.footprint())

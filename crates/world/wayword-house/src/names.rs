@@ -1,10 +1,11 @@
-//! What houses are called: `house2-7` is the house of seed 7, as the second version of the generator makes it.
+//! The names of houses: `house2-7` is the house of seed 7, as the second version of the generator makes it.
 //!
-//! A seed's house may change with the version alone, so that an old run never goes on in a house with other walls.
+//! The house of a seed changes only together with the version in the name. So an old run never continues in a house with
+//! other walls.
 
 /// Before the seed: the name of the platform, and the version of the generator.
 const PREFIX: &str = "house2-";
-/// The same, in versions whose houses this one does not make.
+/// The prefix of earlier versions; this version cannot make their houses.
 const OLD_PREFIX: &str = "house-";
 
 /// The name of the house of a seed, as a scene and as the stem of its files.
@@ -35,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_is_that_of_its_seed_and_version() {
+    fn scene_names_contain_seed_and_version() {
         assert_eq!(seed_of(&scene_name(u64::MAX)), Some(u64::MAX));
         assert_eq!((seed_of("house2-07"), seed_of("house-7"), seed_of("house2-")), (None, None, None));
         assert_eq!((old_seed_of("house-7"), old_seed_of("house2-7")), (Some(7), None));

@@ -1,4 +1,4 @@
-//! The objects of a house, by their numbers in its pictures.
+//! The table of a house's objects by the numbers that its pictures carry in each pixel.
 
 use super::{
     model::{House, Opening},

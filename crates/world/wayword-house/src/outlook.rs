@@ -1,4 +1,4 @@
-//! What lies outside a house, on each of its four sides.
+//! Chooses the view out of the windows on each of a house's four sides.
 
 use super::{
     dice::Dice,
@@ -6,7 +6,7 @@ use super::{
     rect::Wall,
 };
 
-/// What one sees out of the windows of one side.
+/// The view out of the windows of one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Outlook {
     /// A street with houses opposite and a parked car.
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn houses_differ() {
+    fn outlooks_differ_between_houses() {
         let all: BTreeSet<_> = (0..20).map(|seed| outlooks(&generate(seed))).collect();
         assert!(all.len() > 12, "{all:?}");
     }

@@ -1,4 +1,4 @@
-//! The built-in platform.
+//! Offers generated houses as a [`Platform`].
 
 use super::{
     graph::EYE_M,

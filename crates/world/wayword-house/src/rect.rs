@@ -17,7 +17,7 @@ pub struct RectCm {
     pub y1: i32,
 }
 
-/// A wall of a rectangle, by the side on which it stands; north is +y.
+/// One of the four walls of a rectangle, named by its side; north is +y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Wall {
@@ -48,7 +48,7 @@ impl Wall {
     /// All four, by quarter turns counter-clockwise from north.
     pub const ALL: [Self; 4] = [Self::North, Self::West, Self::South, Self::East];
 
-    /// Quarter turns, counter-clockwise, of a piece whose back stands at this wall (0: its back is north, and it faces
+    /// Quarter turns, counter-clockwise, of a piece that has its back to this wall (0: its back is north, and it faces
     /// south).
     #[must_use]
     pub fn quarter_turns(self) -> u8 {

@@ -1,4 +1,5 @@
-//! Random paths through a house: a shortest way between two places, with frames along it.
+//! Draws random paths through a house: a shortest way between two viewpoints, with frames along it and a target at its
+//! end.
 
 use super::{dice::Dice, graph::EYE_M, ground::Way, home::Home, objects::Role};
 use wayword_core::{
@@ -13,10 +14,10 @@ const GEODESIC_EXCESS: f64 = 1.03;
 /// Largest distance of a target from the last frame, to the nearest side of its box along the floor, metres.
 const TARGET_REACH_M: f64 = 2.5;
 
-/// A path whose length fits `request`, with frames at most `interval_m` apart and at every corner.
+/// Draws a path of a length that `request` allows, with frames at most `interval_m` apart and at every corner.
 ///
-/// Both ends are the places of random viewpoints, the second not in an opening: whoever stands there is in no room. The
-/// target stands in the room of the end. The first frame looks along the first move.
+/// Both ends are the places of random viewpoints. The path does not end in an opening, because a walker there is in no
+/// room. The target is in the room where the path ends. The first frame looks along the first move.
 pub(super) fn path(
     scene: &SceneId,
     home: &Home,
@@ -59,7 +60,8 @@ impl Wander for Walker<'_> {
     }
 }
 
-/// Where frames are taken: at both ends, at corners, and at equal distances of at most `interval_m` between.
+/// The places of the frames along a way: at both ends, at corners, and between them at equal distances of at most
+/// `interval_m`.
 fn stops(way: &Way, interval_m: f64) -> Vec<Stop> {
     let interval_m = if interval_m.is_finite() { interval_m.max(0.1) } else { 1.0 };
     let mut marks = vec![0];
@@ -94,8 +96,8 @@ fn stop(place: DVec3) -> Stop {
     Stop { position: place + DVec3::Z * EYE_M, viewpoint: None, level: Some(1 + u32::from(place.z > half_storey_m)) }
 }
 
-/// One of the pieces of furniture in reach. A piece without a namesake in sight comes first; otherwise the program
-/// takes one that its colour sets apart from its namesakes.
+/// Chooses a target among the pieces of furniture in reach. A piece without a namesake in sight comes first; otherwise
+/// one that differs in colour from its namesakes.
 fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, PlatformError> {
     let labels = home.labels_around(last)?;
     let namesakes = |label: &Label| labels.iter().filter(|other| other.name == label.name).count() - 1;
@@ -128,7 +130,7 @@ fn target(home: &Home, dice: &mut Dice, last: Pose) -> Result<Option<Target>, Pl
     }))
 }
 
-/// How far a box is from somebody who stands there, along the floor, metres.
+/// The distance along the floor from a walker's feet to a box, metres.
 fn off_m(feet: DVec3, (low, high): (DVec3, DVec3)) -> f64 {
     let nearest = feet.clamp(low.with_z(f64::MIN), high.with_z(f64::MAX));
     (nearest - feet).truncate().length()

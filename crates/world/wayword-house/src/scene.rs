@@ -1,4 +1,4 @@
-//! A house that is ready to be drawn.
+//! A house with its meshes, ready to be drawn from anywhere.
 
 use super::{
     drawing,

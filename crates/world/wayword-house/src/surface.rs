@@ -1,8 +1,8 @@
-//! The surface of things: a pattern and a colour.
+//! The surface of a mesh: a pattern in a colour, before it becomes a texture and a material.
 
 use super::{colour::Colour, outlook::Outlook};
 
-/// A picture that is laid on surfaces. It is light grey where the surface gives the colour.
+/// A picture that is laid on surfaces. It is light grey if the surface provides the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Pattern {
     Plain,
@@ -18,7 +18,7 @@ pub(crate) enum Pattern {
     Leaves,
     Brick,
     Books,
-    /// What lies outside, from the ground floor.
+    /// The view out of a window, from the ground floor.
     Outside(Outlook),
     /// The same from upstairs.
     FromAbove(Outlook),

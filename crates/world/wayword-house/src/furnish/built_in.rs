@@ -1,4 +1,4 @@
-//! What is built into walls, or fixed to them: closets, shelves with books, radiators.
+//! Adds the furniture that is built into walls or fixed to them: closets, shelves with books, radiators.
 
 use super::super::{catalogue::FurnitureKind as K, model::RoomKind, rect::Wall};
 use super::placing::{Furnisher, Piece};
@@ -6,7 +6,7 @@ use super::placing::{Furnisher, Piece};
 /// Distance between two places along a wall that are tried, centimetres.
 const STEP_CM: i32 = 6;
 
-/// What a room of a kind has, with its width: the widest that fits is taken, once on each wall.
+/// The built-in furniture of a kind of room, with its widths: the widest piece that fits is taken, once on each wall.
 fn usual(kind: RoomKind) -> &'static [(K, i32)] {
     match kind {
         RoomKind::Hallway => &[(K::ClosetDoor, 180), (K::WallBookshelf, 120), (K::ClosetDoor, 120)],
@@ -18,7 +18,7 @@ fn usual(kind: RoomKind) -> &'static [(K, i32)] {
     }
 }
 
-/// Builds in what a room usually has, on walls where nothing stands; then radiators.
+/// Adds a room's usual built-in furniture to bare walls, and then its radiators.
 pub(super) fn furnish(room: &mut Furnisher<'_>, kind: RoomKind) {
     let walls = room.shuffled_walls();
     // A bedroom has one closet, and a living room one wall of books; a hallway has several of both.
@@ -43,7 +43,7 @@ pub(super) fn furnish(room: &mut Furnisher<'_>, kind: RoomKind) {
     }
 }
 
-/// Fixes something to a wall at the first place where nothing is in its way, from the middle outwards.
+/// Fixes a piece to a wall at the first place where the wall is bare, from the middle outwards.
 fn fix(room: &mut Furnisher<'_>, wall: Wall, kind: K, width: i32, base: i32) -> Option<Piece> {
     let [_, depth, height] = kind.entry().size_cm;
     let edge = room.inner.edge(wall);

@@ -1,4 +1,6 @@
 //! Hangs pictures, mirrors, cloths and coats on the stretches of wall that furniture leaves bare.
+//!
+//! Each wall is searched in three bands of height. Bare stretches of a band are filled with things side by side.
 
 use super::super::{
     catalogue::FurnitureKind as K,
@@ -7,18 +9,18 @@ use super::super::{
 };
 use super::placing::Furnisher;
 
-/// Distance between two things that hang side by side, and to a room's corner, centimetres.
+/// Distance between two hanging things side by side, and to a room's corner, centimetres.
 const GAP_CM: i32 = 9;
 /// Width of the strips in which a wall is searched, centimetres.
 const STRIP_CM: i32 = 5;
-/// The narrowest stretch that something is hung on, centimetres.
+/// The narrowest stretch of wall that gets a hanging, centimetres.
 const NARROWEST_CM: i32 = 36;
 
-/// How many things of a kind in a row differ in colour, and how often another colour is drawn for that.
+/// So many things of a kind in a row differ in colour, and another colour is drawn at most so often to achieve this.
 const APART: usize = 4;
 const TRIES: usize = 8;
 
-/// Heights between which things hang, centimetres above the floor: over the bare floor, over low furniture, and over
+/// The bands of height for hanging things, centimetres above the floor: over the bare floor, over low furniture, and over
 /// high furniture.
 const BANDS: [Band; 3] = [Band { base: 58, top: 226 }, Band { base: 116, top: 226 }, Band { base: 160, top: 226 }];
 
@@ -28,7 +30,7 @@ struct Band {
     top: i32,
 }
 
-/// What may hang in a room of a kind, with how often in a hundred; the shares of a room sum to 100.
+/// The things that may hang in a kind of room, each with its share in percent; the shares of a room sum to 100.
 fn usual(kind: RoomKind) -> &'static [(K, i32)] {
     match kind {
         RoomKind::Hallway | RoomKind::Entryway | RoomKind::Staircase => {
@@ -46,7 +48,7 @@ fn usual(kind: RoomKind) -> &'static [(K, i32)] {
     }
 }
 
-/// Least and most usual width of something that hangs, and its greatest height, centimetres.
+/// Least and greatest usual width of a hanging thing, and its greatest height, centimetres.
 fn measure(kind: K) -> ([i32; 2], i32) {
     match kind {
         K::Mirror => ([46, 74], 150),
@@ -61,7 +63,7 @@ fn measure(kind: K) -> ([i32; 2], i32) {
 }
 
 impl Furnisher<'_> {
-    /// Covers what is bare: first from low to high, then over furniture.
+    /// Covers bare walls, one band of height after another.
     pub(super) fn dress_walls(&mut self) {
         for wall in Wall::ALL {
             for band in BANDS {
@@ -72,7 +74,7 @@ impl Furnisher<'_> {
         }
     }
 
-    /// The stretches of a wall on which nothing is between two heights.
+    /// The stretches of a wall that are bare in a band of height.
     fn bare_runs(&self, wall: Wall, band: Band) -> Vec<(i32, i32)> {
         let edge = self.inner.edge(wall);
         let mut runs: Vec<(i32, i32)> = Vec::new();
@@ -106,7 +108,7 @@ impl Furnisher<'_> {
         for (kind, width) in chosen {
             let room = band.top - band.base;
             let height = measure(kind).1.min(room);
-            // Coats and cloths hang down from the top; what one looks at has its middle at the height of the eyes.
+            // Coats and cloths hang down from the top; pictures have their middle at the height of the eyes.
             let spare = room - height;
             let base =
                 band.base + if matches!(kind, K::CoatHooks | K::Tapestry | K::Towel) { spare } else { spare / 2 };
@@ -117,7 +119,7 @@ impl Furnisher<'_> {
         }
     }
 
-    /// Hangs something in a colour that the last things of its kind do not have: no two like pictures side by side.
+    /// Hangs a thing in a colour that the last things of its kind do not have, so that no two like pictures hang side by side.
     pub(super) fn hang_apart(&mut self, kind: K, area: RectCm, base: i32, height: i32, wall: Wall) {
         let before = self.last_colours(kind, APART);
         let piece = self.put(kind, area, base, height, wall);
@@ -130,7 +132,7 @@ impl Furnisher<'_> {
         }
     }
 
-    /// Something that fits into a width, other than its neighbour, and its own width.
+    /// Chooses a thing that fits into a width and differs from its neighbour, and the thing's own width.
     fn choose(&mut self, left: i32, neighbour: Option<K>) -> (K, i32) {
         let fits = |kind: K| measure(kind).0[0] <= left && Some(kind) != neighbour;
         let fitting: Vec<_> = usual(self.room.kind).iter().filter(|(kind, _)| fits(*kind)).collect();
@@ -139,11 +141,11 @@ impl Furnisher<'_> {
             drawn -= share;
             drawn <= 0
         };
-        // A picture can be as narrow as what is left.
+        // A picture can be as narrow as the rest of the stretch.
         let kind = fitting.iter().find(|(_, share)| is_drawn(*share)).map_or(K::Painting, |(kind, _)| *kind);
         let [least, most] = measure(kind).0;
         let width = self.dice.stepped(least.min(left), most.min(left), 2);
-        // What would be left is too narrow for anything else.
+        // If the rest would be too narrow for another thing, this one takes it too.
         let rest = left - width - GAP_CM;
         (kind, if rest < NARROWEST_CM && left <= most { left } else { width })
     }

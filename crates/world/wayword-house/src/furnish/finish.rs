@@ -1,4 +1,5 @@
-//! The finish of furniture: one for a house, another in some of its rooms, and a few pieces that stand out.
+//! Chooses the finish of wooden furniture: one for the house, another in some of its rooms, and a different one for a few
+//! pieces.
 
 use super::super::{catalogue::FurnitureKind as K, colour::Colour, dice::Dice, model::RoomKind};
 use super::placing::{Furnisher, Piece};
@@ -31,9 +32,9 @@ const FRONTS: [Colour; 8] = [
 /// The finishes of the furniture in one room.
 #[derive(Debug)]
 pub(super) struct Finishes {
-    /// Of most pieces.
+    /// The finish of most pieces.
     pub(super) main: Colour,
-    /// Of the piece that stands out.
+    /// The finish of the few pieces that differ.
     accent: Colour,
     dice: Dice,
 }
@@ -49,7 +50,7 @@ pub(super) fn of_kitchen(dice: &mut Dice) -> Colour {
 }
 
 impl Finishes {
-    /// Those of a room; its own dice, so that they change nothing else.
+    /// The finishes of a room. They have their own random numbers, so that they change no other choice.
     pub(super) fn of_room(seed: u64, index: usize, kind: RoomKind, house: Colour) -> Self {
         let mut dice = Dice::new(seed, &["finish", &index.to_string()]);
         // The rooms where guests are match; bedrooms and offices are furnished one by one.

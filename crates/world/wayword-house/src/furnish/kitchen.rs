@@ -6,7 +6,7 @@ use super::super::{
 };
 use super::placing::{Along, Furnisher, Piece};
 
-/// What stands in the row, from one end to the other.
+/// The pieces of the row, from one end to the other.
 const ROW: [K; 6] = [K::Refrigerator, K::Counter, K::Stove, K::Counter, K::KitchenSink, K::Counter];
 
 pub(super) fn furnish(room: &mut Furnisher<'_>) {

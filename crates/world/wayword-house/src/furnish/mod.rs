@@ -1,4 +1,7 @@
-//! Puts the usual furniture into each kind of room.
+//! Furnishes a house: puts the usual furniture into each kind of room, then closets and radiators, then pictures on the
+//! bare walls.
+//!
+//! The order matters, because each piece takes space from the later ones. Every kind of room has its own file.
 
 mod bathroom;
 mod bedroom;
@@ -32,7 +35,8 @@ pub(super) struct Taste {
     pub(super) curtain: Colour,
 }
 
-/// All furniture of a house. Each room has its own dice, so that the choices in one room do not change the next.
+/// All furniture of a house. Each room has its own random numbers, so that the choices in one room do not change the
+/// next.
 pub(super) fn furnish(seed: u64, layout: &Layout) -> Vec<Furniture> {
     let mut dice = Dice::new(seed, &["taste"]);
     let taste = Taste {

@@ -1,4 +1,5 @@
-//! Places pieces in a room one by one, where they fit and every door can still be reached.
+//! Places pieces in a room one by one. A piece is placed only where it fits, blinds no window, and leaves every door
+//! within reach.
 
 use super::super::{
     catalogue::FurnitureKind,
@@ -23,7 +24,7 @@ pub(super) struct Furnisher<'a> {
     doorsteps: Vec<RectCm>,
     /// Where the room's openings are on its walls.
     holes: Vec<SpanCm>,
-    /// Door leaves that stand open in the room.
+    /// Floor under door leaves that are open into the room.
     leaves: Vec<RectCm>,
     /// Where the front door is, if this room has it.
     front_door: Option<SpanCm>,
@@ -42,18 +43,18 @@ pub(super) enum Along {
     Anywhere,
 }
 
-/// Least distance between something that hangs on a wall and its neighbours, centimetres.
+/// Least distance between a hanging piece and its neighbours on the wall, centimetres.
 const BESIDE_CM: i32 = 8;
 
-/// The same for the frames of doors and windows, centimetres.
+/// Least distance between a hanging piece and the opening of a door or a window, centimetres.
 const FRAME_CM: i32 = 10;
-/// Nothing hangs nearer to an open door's leaf than this, centimetres.
+/// Least distance between a hanging piece and an open door's leaf, centimetres.
 const BEHIND_LEAF_CM: i32 = 12;
 
 /// A piece in the room: its index in the list.
 pub(super) type Piece = usize;
 
-/// What a piece is mainly made of: a table of glass is not of wood.
+/// The main material of a piece. The colour can override the catalogue: a glass table is not made of wood.
 fn material(kind: FurnitureKind, colour: Colour) -> &'static str {
     if colour == Colour::Glass { "glass" } else { kind.entry().material }
 }
@@ -138,7 +139,8 @@ impl<'a> Furnisher<'a> {
         self.pieces.len() - 1
     }
 
-    /// Places something with its back to one of `walls`, with `clearance` centimetres of free floor in front.
+    /// Places a piece with its back to the first of `walls` where it fits, with `clearance` centimetres of free floor in
+    /// front. Returns `None` if it fits nowhere, as all functions here do.
     pub(super) fn stand(&mut self, kind: FurnitureKind, walls: &[Wall], along: Along, clearance: i32) -> Option<Piece> {
         let size = kind.size_cm(&mut self.dice);
         self.stand_sized(kind, size, walls, along, clearance)
@@ -198,7 +200,7 @@ impl<'a> Furnisher<'a> {
         fits.then(|| self.put(kind, footprint, 0, height, wall))
     }
 
-    /// Places something beside a piece, at the same wall: `gap` centimetres further along it, or back where negative.
+    /// Places a piece next to another at the same wall, `gap` centimetres further along it, or before it if `gap` is negative.
     pub(super) fn beside(&mut self, anchor: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
         let wall = self.wall_behind(anchor);
         let size = kind.size_cm(&mut self.dice);
@@ -255,6 +257,7 @@ impl<'a> Furnisher<'a> {
         self.room.outline.wall_of(span) == Some(wall)
     }
 
+    /// The places along a wall at which a piece of this width fits, in the order in which they are tried.
     fn offsets(&mut self, wall: Wall, width: i32, along: Along) -> Vec<i32> {
         let edge = self.inner.edge(wall);
         let spare = edge.length() - width;
@@ -270,7 +273,7 @@ impl<'a> Furnisher<'a> {
         offsets.into_iter().map(|offset| edge.from + offset).collect()
     }
 
-    /// The footprint of something whose back touches a wall, from `from` along it.
+    /// The footprint of a piece that has its back to a wall, from `from` along it.
     pub(super) fn at_wall(&self, wall: Wall, from: i32, [width, depth, _]: [i32; 3]) -> RectCm {
         let edge = self.inner.edge(wall);
         let area = SpanCm { from, to: from + width, ..edge }.thickened(0);
@@ -340,7 +343,7 @@ impl<'a> Furnisher<'a> {
         self.put(kind, footprint, base - self.room.base_cm(), height, wall)
     }
 
-    /// Lays something flat, centred on a point.
+    /// Lays a flat piece on the floor, centred on a point, and cuts it at the walls.
     pub(super) fn lay(
         &mut self,
         kind: FurnitureKind,
@@ -368,8 +371,8 @@ impl<'a> Furnisher<'a> {
         self.put(kind, footprint, CEILING_CM - height, height, Wall::North)
     }
 
-    /// Whether a stretch of wall between two heights has no opening, no window and nothing in front of it. What is
-    /// `slim` may hang beside a door where one walks by.
+    /// Whether a stretch of wall between two heights is free: no opening, no window and no piece is there. A `slim` thing may
+    /// also hang where people walk past it, next to a door.
     pub(super) fn wall_is_bare(&self, wall: Wall, area: &RectCm, base: i32, top: i32, slim: bool) -> bool {
         let hole = self.holes.iter().any(|span| self.is_on(wall, span) && span.thickened(FRAME_CM).overlaps(area));
         let window = self
@@ -381,7 +384,7 @@ impl<'a> Furnisher<'a> {
             let (low, high) = (piece.base_cm - floor, piece.base_cm - floor + piece.height_cm);
             low < top && base < high && piece.footprint.inset(-BESIDE_CM).overlaps(area)
         });
-        // Somebody who comes in would run into what is deep, but not into a picture.
+        // A person who comes in would run into a deep piece, but not into a picture.
         let blocked = if slim {
             self.leaves.iter().any(|leaf| leaf.inset(-BEHIND_LEAF_CM).overlaps(area))
         } else {

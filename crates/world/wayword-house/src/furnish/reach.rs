@@ -1,4 +1,4 @@
-//! Whether one can still walk between all doors of a room and to most of its floor.
+//! Checks that one can still walk between all doors of a room, and to most of its floor, with the furniture in place.
 
 use super::super::rect::RectCm;
 
@@ -28,8 +28,8 @@ pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[
         let cell = |cm: i32, count: i32| (cm / CELL_CM).clamp(0, count - 1);
         let (left, right) = (cell(step.x0 - inner.x0, columns), cell(step.x1 - 1 - inner.x0, columns));
         let (low, high) = (cell(step.y0 - inner.y0, rows), cell(step.y1 - 1 - inner.y0, rows));
-        // A leaf that stands ajar may cover the middle, so any free place on the doorstep counts; the nearest to its
-        // middle first.
+        // An open leaf may cover the middle, so any free place on the doorstep counts; those nearest to its middle are
+        // tried first.
         let mut cells: Vec<_> = (low..=high).flat_map(|row| (left..=right).map(move |column| (column, row))).collect();
         cells.sort_by_key(|(column, row)| (2 * column - left - right).abs() + (2 * row - low - high).abs());
         cells.into_iter().find_map(|(column, row)| parts.part[(row * columns + column) as usize])
@@ -39,6 +39,7 @@ pub(super) fn ways_stay_open(inner: &RectCm, obstacles: &[RectCm], doorsteps: &[
     joined && largest * 100 >= total * 88
 }
 
+/// The connected parts of the free floor: the part of each cell, and the number of cells in each part.
 struct Parts {
     part: Vec<Option<usize>>,
     sizes: Vec<usize>,

@@ -1,4 +1,4 @@
-//! The walls of a stairwell: pictures that follow the flights.
+//! Decorates the walls of a stairwell with pictures that follow the flights.
 
 use super::super::{
     catalogue::FurnitureKind as K,

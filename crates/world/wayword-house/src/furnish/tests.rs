@@ -39,7 +39,7 @@ proptest! {
     }
 
     #[test]
-    fn nothing_stands_in_anything_but_chairs_under_tables(seed: u64) {
+    fn pieces_overlap_only_where_chairs_go_under_tables(seed: u64) {
         let house = generate(seed);
         let pieces = standing(&house);
         for (index, a) in pieces.iter().enumerate() {
@@ -52,7 +52,7 @@ proptest! {
     }
 
     #[test]
-    fn object_numbers_are_taken_once(seed: u64) {
+    fn object_numbers_are_unique(seed: u64) {
         let house = generate(seed);
         let mut ids: Vec<u32> = house.furniture.iter().map(|piece| piece.id).collect();
         ids.extend(house.openings.iter().map(|opening| opening.id));
@@ -66,7 +66,7 @@ proptest! {
 }
 
 #[test]
-fn rooms_are_furnished_as_such_rooms_are() {
+fn rooms_have_the_usual_furniture_of_their_kind() {
     let houses: Vec<House> = (0..60).map(generate).collect();
     let share = |room, kind| {
         let with = houses.iter().filter(|house| count(house, room, kind) > 0).count();
@@ -118,7 +118,7 @@ fn furniture_has_ten_finishes_and_few_pieces_are_brown() {
 }
 
 #[test]
-fn what_hangs_keeps_clear_of_doors_windows_and_other_things_on_the_wall() {
+fn hangings_keep_clear_of_doors_windows_and_each_other() {
     for house in (0..20).map(generate) {
         let on_wall: Vec<&Furniture> = house.furniture.iter().filter(|piece| piece.kind.is_slim_on_wall()).collect();
         let covers =

@@ -1,10 +1,10 @@
-//! Things that hang on walls and beside windows.
+//! Hangs things on walls, and curtains at windows.
 
 use super::super::{catalogue::FurnitureKind, rect::Wall};
 use super::placing::{Furnisher, Piece};
 
 impl Furnisher<'_> {
-    /// Hangs something above a piece, centred on it, its lower edge `gap` centimetres over the piece's top.
+    /// Hangs a thing above a piece, centred on it, its lower edge `gap` centimetres over the piece's top.
     pub(super) fn hang_over(&mut self, below: Piece, kind: FurnitureKind, gap: i32) -> Option<Piece> {
         let size = kind.size_cm(&mut self.dice);
         let wall = self.wall_behind(below);
@@ -15,13 +15,13 @@ impl Furnisher<'_> {
         self.hang_at(kind, wall, from, base, size)
     }
 
-    /// Hangs something at a height of `base` centimetres, on the first wall with room for it.
+    /// Hangs a thing at a height of `base` centimetres, on the first wall with room for it.
     pub(super) fn hang(&mut self, kind: FurnitureKind, base: i32) -> Option<Piece> {
         let size = kind.size_cm(&mut self.dice);
         self.hang_sized(kind, size, base)
     }
 
-    /// As [`Self::hang`], with its own size.
+    /// As [`Self::hang`], with a given size.
     pub(super) fn hang_sized(&mut self, kind: FurnitureKind, size: [i32; 3], base: i32) -> Option<Piece> {
         for wall in self.shuffled_walls() {
             let edge = self.inner.edge(wall);
@@ -37,7 +37,7 @@ impl Furnisher<'_> {
         None
     }
 
-    /// Hangs something at a place, if the wall is bare there.
+    /// Hangs a thing at a place, if the wall is bare there.
     pub(super) fn hang_at(
         &mut self,
         kind: FurnitureKind,
@@ -52,7 +52,7 @@ impl Furnisher<'_> {
         fits.then(|| self.put(kind, area, base, size[2], wall))
     }
 
-    /// Hangs curtains on both sides of every window, where nothing is in the way.
+    /// Hangs curtains on both sides of every window, where the wall is free.
     pub(super) fn curtains(&mut self) {
         for (span, _) in self.windows.clone() {
             let Some(wall) = self.room.outline.wall_of(&span) else {

@@ -1,4 +1,4 @@
-//! The walkable cells as JSON.
+//! Writes the walkable cells as JSON, for the navigation file of a house.
 
 use super::{CELL_CM, Cell, Ground};
 use serde_json::{Value, json};

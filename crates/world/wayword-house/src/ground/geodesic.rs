@@ -1,4 +1,4 @@
-//! Shortest ways: A* over the cells, then pulled taut.
+//! Finds shortest ways over the ground: first A* over the cells, then the way is pulled taut like a string.
 
 use super::{CELL_CM, Cell, Ground, NoWay};
 use wayword_core::DVec3;
@@ -31,6 +31,7 @@ impl Ground {
         Ok(self.way(&corners))
     }
 
+    /// The shortest way from cell to cell, which still has the corners of the grid.
     fn over_cells(&self, start: Cell, goal: Cell) -> Option<Vec<Cell>> {
         let size = self.grid.len();
         let number = |cell: Cell| cell.layer * size + cell.index;
@@ -46,6 +47,8 @@ impl Ground {
         Some(way.into_iter().map(cell).collect())
     }
 
+    /// The cells that can be reached from a cell, with the length of each step: those around it, and at no cost the same cell
+    /// in a linked layer.
     pub(super) fn neighbours(&self, cell: Cell) -> impl Iterator<Item = (Cell, u64)> + '_ {
         let walks = around(move |step| {
             let next = Cell { index: self.grid.offset(cell.index, step)?, ..cell };
@@ -61,7 +64,7 @@ impl Ground {
         walks.chain(layers.map(move |layer| (Cell { layer, ..cell }, 0)))
     }
 
-    /// Moves corners to where the way is shorter and still free, until no move helps.
+    /// Moves corners by up to eight cells to where the way is shorter and still free, until no move helps.
     fn pull(&self, corners: &mut Vec<Cell>) {
         for _ in 0..40 {
             let mut changed = false;

@@ -1,4 +1,4 @@
-//! Cells in layers above one another.
+//! The grid behind the walkable ground: cells in layers above one another, each free or blocked.
 
 use super::{
     super::{model::House, rect::RectCm},
@@ -13,7 +13,7 @@ pub(in super::super) struct Cell {
     pub(in super::super) index: usize,
 }
 
-/// The areas that make a layer: one can stand where an `open` area lies and no `blocked` one.
+/// The areas that make a layer: a cell is free if an `open` area covers it and no `blocked` area does.
 pub(super) struct Layer {
     pub(super) open: Vec<RectCm>,
     pub(super) blocked: Vec<RectCm>,
@@ -27,9 +27,9 @@ pub(super) struct Grid {
     columns: i32,
     rows: i32,
     layers: usize,
-    /// By cell, one bit for each layer in which one can stand there.
+    /// For each cell, one bit for each layer in which it is free.
     free: Vec<u8>,
-    /// By cell, one bit for each storey that is linked with the stairs there.
+    /// For each cell, one bit for each storey that is linked with the stairs there.
     linked: Vec<u8>,
 }
 
@@ -52,7 +52,7 @@ impl Grid {
         grid
     }
 
-    /// Changes the cells whose middle lies in a rectangle; its edge counts as inside where `closed`.
+    /// Changes the cells that have their middle in a rectangle; a middle on its edge counts as inside if `closed` is true.
     fn each_in(&mut self, area: &RectCm, closed: bool, change: impl Fn(&mut u8)) {
         // Doubled centimetres, since a cell's middle may lie between two.
         let first = |edge: i32, origin: i32| {

@@ -1,8 +1,8 @@
-//! Where one can walk: a grid over each storey and over the stairs.
+//! The walkable ground of a house: a grid of cells over each storey and over the stairs.
 //!
-//! There is one layer for each storey and one for the stairwell. Where the stairwell's layer reaches out onto a
-//! storey's floor, the two layers are linked. So every place has one height in its layer, and a straight walk is a walk
-//! over cells.
+//! There is one layer of cells for each storey and one for the stairwell, because two flights can lie above each other's
+//! floor. The stairwell's layer reaches a little way onto the floors of the storeys, and there the layers are linked. So
+//! every place has one height in its layer, and a straight walk is a walk over cells.
 
 mod export;
 mod geodesic;
@@ -24,7 +24,7 @@ pub const RADIUS_CM: i32 = 20;
 pub(super) const CELL_CM: i32 = 5;
 /// How far the stairwell's layer reaches out onto the floors, centimetres.
 const APRON_CM: i32 = 40;
-/// An object whose lower edge is below this height above the floor is in a walker's way, centimetres.
+/// A walker fits under objects that begin at this height above the floor, centimetres.
 const HEADROOM_CM: i32 = 175;
 
 /// The walkable ground of a house.
@@ -35,7 +35,7 @@ pub struct Ground {
     storeys: u32,
 }
 
-/// Why there is no way.
+/// Why there is no way between two places.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoWay {
     /// A place that is not walkable.
@@ -58,7 +58,7 @@ impl Ground {
         ground
     }
 
-    /// Removes the pockets behind furniture that cannot be reached.
+    /// Keeps only the largest connected part of the ground. The rest are pockets behind furniture that cannot be reached.
     fn keep_largest_part(&mut self) {
         let size = self.grid.len();
         let number = |cell: Cell| cell.layer * size + cell.index;
@@ -120,7 +120,7 @@ impl Ground {
         }
     }
 
-    /// The cell on which a point of the floor lies, if one can stand there; `place.z` is the floor's height.
+    /// The free cell at a point of the floor; `None` if a walker cannot stand there. `place.z` is the floor's height.
     pub(super) fn cell_at(&self, place: DVec3) -> Option<Cell> {
         let index = self.grid.index_at(place.x, place.y)?;
         let cells = (0..self.grid.layers()).map(|layer| Cell { layer, index }).filter(|cell| self.grid.is_free(*cell));
@@ -128,7 +128,7 @@ impl Ground {
         cells.filter(|cell| off_m(cell) < 0.3).min_by(|a, b| off_m(a).total_cmp(&off_m(b)))
     }
 
-    /// Whether somebody can stand at a point of the floor, metres.
+    /// Whether a walker can stand at a point of the floor, metres.
     #[must_use]
     pub fn is_walkable(&self, place: DVec3) -> bool {
         self.cell_at(place).is_some()
@@ -140,7 +140,7 @@ impl Ground {
         DVec3::new(x_m, y_m, self.height_at_m(cell.layer, x_m, y_m))
     }
 
-    /// All cells on which one can stand, layer by layer.
+    /// All cells on which a walker can stand, layer by layer.
     pub(super) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         let all =
             (0..self.grid.layers()).flat_map(|layer| (0..self.grid.len()).map(move |index| Cell { layer, index }));
@@ -159,7 +159,7 @@ impl Ground {
     }
 }
 
-/// The layer of a storey: its rooms and passages, without the places where furniture stands.
+/// The layer of a storey: its rooms and passages, without the floor that furniture and open doors take.
 fn floor_layer(house: &House, floor: u32) -> Layer {
     let base = floor as i32 * STOREY_CM;
     let is_well = |index: usize| house.stairs.as_ref().is_some_and(|stairs| stairs.room == index);

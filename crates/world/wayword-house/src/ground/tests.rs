@@ -75,7 +75,7 @@ fn the_way_round_a_wall_is_taut() {
 }
 
 #[test]
-fn what_no_way_leads_to_is_no_ground() {
+fn ground_leaves_out_floor_that_cannot_be_reached() {
     let mut house = two_rooms();
     house.openings.clear();
     house.rooms[1].outline.x1 = 600;

@@ -1,4 +1,4 @@
-//! Straight walks over the grid.
+//! Straight walks over the grid: whether one is possible, and the places along it.
 
 use super::{Cell, Ground};
 use wayword_core::DVec3;
@@ -7,7 +7,7 @@ use wayword_core::DVec3;
 const STEP_M: f64 = 0.025;
 
 impl Ground {
-    /// The layers on which a walker may be at a cell, after being on the layers `on`: one bit for each.
+    /// The layers on which a walker may be at a cell, one bit for each, if the walker comes from the layers `on`.
     fn onto(&self, on: u8, index: usize) -> u8 {
         let (free, linked) = (self.grid.free_layers(index), self.grid.linked_floors(index));
         let stairs = 1_u8 << self.storeys;
@@ -17,8 +17,7 @@ impl Ground {
         kept | ((down | up) & free)
     }
 
-    /// The places of a straight walk between two cells, on the ground, half a cell apart; `None` where something is in
-    /// the way.
+    /// The places of a straight walk between two cells, on the ground, half a cell apart; `None` if something is in the way.
     pub(super) fn straight(&self, from: Cell, to: Cell) -> Option<Vec<DVec3>> {
         let mut places = Vec::new();
         self.march(from, to, |x_m, y_m, on| {
@@ -34,6 +33,8 @@ impl Ground {
         self.march(from, to, |_, _, _| {})
     }
 
+    /// Walks straight from one cell to another in small steps. `visit` gets the place of each step and the layers that are
+    /// possible there. Returns whether the walk arrives.
     fn march(&self, from: Cell, to: Cell, mut visit: impl FnMut(f64, f64, u8)) -> bool {
         let ((ax, ay), (bx, by)) = (self.grid.centre_m(from.index), self.grid.centre_m(to.index));
         let (dx, dy) = (bx - ax, by - ay);

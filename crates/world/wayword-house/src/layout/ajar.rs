@@ -1,4 +1,4 @@
-//! How far the doors of a house stand open.
+//! Chooses how far each door of a house is open.
 
 use super::super::{
     dice::Dice,
@@ -7,11 +7,11 @@ use super::super::{
 };
 use super::openings::swing;
 
-/// Angles between a leaf and its wall that a door may stand at, degrees.
+/// The possible angles between an open leaf and its wall, degrees.
 const ANGLES: [i32; 10] = [68, 76, 84, 88, 90, 92, 94, 100, 106, 112];
 
-/// Turns each open leaf to an angle at which it stays in its room and out of the way of the other doors. The dice have
-/// their own purpose, so that the plan does not depend on them.
+/// Turns each open leaf to an angle at which it stays in its room and out of the way of the other doors. The choice has
+/// its own random numbers, so it changes nothing else in the plan.
 pub(super) fn turn(seed: u64, rooms: &[Room], openings: &mut [Opening]) {
     let mut dice = Dice::new(seed, &["ajar"]);
     for index in 0..openings.len() {

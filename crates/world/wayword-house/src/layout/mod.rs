@@ -1,7 +1,8 @@
-//! Floor plans: which rooms there are, where they lie, and which are joined.
+//! Makes the floor plan of a house: which rooms there are, where they lie, and which are joined.
 //!
-//! A hallway runs between two strips of rooms; at one end a block of two rooms fills the house's whole depth. Houses
-//! of two storeys have the same stairwell on both. The whole plan is then mirrored or turned.
+//! Every plan follows one scheme. A hallway runs between two strips of rooms; at one end a block of two rooms fills the
+//! house's whole depth. Houses of two storeys have the same stairwell on both. At the end the whole plan is mirrored or
+//! turned, so that houses do not look alike.
 
 mod ajar;
 mod openings;
@@ -27,6 +28,7 @@ struct Plan {
     well: Option<Well>,
 }
 
+/// A room of the plan, before it has colours and finishes.
 #[derive(Debug, Clone, Copy)]
 struct PlannedRoom {
     kind: RoomKind,
@@ -42,6 +44,7 @@ struct Link {
     how: Passage,
 }
 
+/// The kind of opening that joins two rooms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Passage {
     Door,
@@ -107,7 +110,7 @@ pub(super) fn lay_out(seed: u64) -> Layout {
     Layout { storeys, rooms, openings, windows, stairs, next_id: ids.next() }
 }
 
-/// Numbers objects.
+/// Gives each object the next free number.
 struct Ids(u32);
 
 impl Ids {
@@ -117,6 +120,7 @@ impl Ids {
     }
 }
 
+/// Draws the outer dimensions of a house.
 fn shell(dice: &mut Dice, storeys: u32) -> Shell {
     let block = dice.stepped(430, 540, 10);
     let (south, hall, north) = (dice.stepped(370, 430, 10), dice.stepped(160, 200, 10), dice.stepped(350, 410, 10));
@@ -244,6 +248,7 @@ impl Plan {
     }
 }
 
+/// Gives the rooms of a plan their colours, floors and heights.
 fn finish(dice: &mut Dice, plan: &Plan) -> Vec<Room> {
     let scheme = program::Scheme::draw(dice);
     plan.rooms

@@ -1,4 +1,4 @@
-//! Cuts doors and doorways where two rooms are linked.
+//! Cuts a door or a doorway into the wall between any two rooms that the plan links.
 
 use super::super::{
     colour::Colour,
@@ -12,7 +12,7 @@ const DOOR_CM: i32 = 90;
 const NARROWEST_CM: i32 = 75;
 const DOOR_HEIGHT_CM: i32 = 205;
 const DOORWAY_HEIGHT_CM: i32 = 220;
-/// Least length of wall beside an opening, centimetres: half the crossing wall, and the frame.
+/// Least length of wall between an opening and the corner, centimetres: half the crossing wall, and the frame.
 const CORNER_CM: i32 = 16;
 
 pub(super) fn cut(dice: &mut Dice, plan: &Plan, rooms: &[Room], ids: &mut Ids) -> Vec<Opening> {
@@ -32,6 +32,7 @@ pub(super) fn cut(dice: &mut Dice, plan: &Plan, rooms: &[Room], ids: &mut Ids) -
     openings
 }
 
+/// The opening for a link; `None` if the shared wall is too short for one. `before` are the openings placed so far.
 fn place(dice: &mut Dice, plan: &Plan, rooms: &[Room], link: &Link, before: &[Opening]) -> Option<Opening> {
     let edge = edge_between(plan, link)?;
     let (span, leaf, floor) = match link.how {
@@ -61,7 +62,7 @@ fn edge_between(plan: &Plan, link: &Link) -> Option<SpanCm> {
     let outline = plan.rooms[link.room].outline;
     match link.beyond {
         Some(beyond) => Some(outline.shared_edge(&plan.rooms[beyond].outline)?.1),
-        // At the narrow end: front doors are usually there, and a car then stands square to its garage door.
+        // At the narrow end: front doors are usually there, and a car then fits straight through its garage door.
         None => {
             let outer =
                 Wall::ALL.into_iter().map(|wall| outline.edge(wall)).filter(|edge| is_outer(plan, link.room, edge));
@@ -93,7 +94,7 @@ fn doorway(dice: &mut Dice, edge: &SpanCm, width: i32) -> Option<SpanCm> {
     Some(if room - width < 40 { middle(edge, width) } else { SpanCm { from, to: from + width, ..*edge } })
 }
 
-/// A door near one end of the shared wall, hinged there, so that the open leaf stands along the side wall.
+/// A door near one end of the shared wall, hinged there, so that the open leaf lies along the side wall.
 fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[Opening]) -> Option<(SpanCm, Leaf)> {
     let width = DOOR_CM.min(edge.length() - 2 * CORNER_CM);
     if width < NARROWEST_CM {
@@ -122,7 +123,7 @@ fn door(dice: &mut Dice, rooms: &[Room], link: &Link, edge: &SpanCm, before: &[O
     places.iter().copied().map(candidate).find(is_free).or_else(|| places.first().copied().map(candidate))
 }
 
-/// Whether an opening of a room needs the same floor as a new opening's leaf or somebody who walks through it.
+/// Whether an existing opening of a room needs some of the floor that a new opening's leaf swings over.
 fn meets(rooms: &[Room], other: &Opening, room: usize, swing_area: &RectCm) -> bool {
     let touches = other.room == room || other.beyond == Some(room);
     touches && swing(&rooms[room].outline, &other.span).is_some_and(|area| area.overlaps(swing_area))

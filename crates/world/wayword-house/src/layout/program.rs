@@ -1,4 +1,4 @@
-//! Which rooms a storey has, how they are joined, and how they are finished.
+//! The rules of the floor plan: which rooms a storey has, how they are joined, and which colours and floors they get.
 
 use super::{
     super::{
@@ -14,7 +14,7 @@ use RoomKind as R;
 pub(super) struct Program {
     /// The larger room of the block at the hallway's end.
     pub(super) block_main: RoomKind,
-    /// The smaller room beside it.
+    /// The smaller room next to it.
     pub(super) block_side: RoomKind,
     /// The passage between hallway and block.
     pub(super) into_main: Passage,
@@ -31,6 +31,7 @@ pub(super) struct Program {
     pub(super) upstairs: Upstairs,
 }
 
+/// Whether stairs lead up from a storey.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Upstairs {
     Above,

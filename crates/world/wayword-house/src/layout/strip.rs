@@ -1,4 +1,4 @@
-//! A row of rooms of equal depth.
+//! Fills a strip of the plan with rooms of equal depth, one after another.
 
 use super::{
     super::{dice::Dice, model::RoomKind},
@@ -34,6 +34,7 @@ pub(super) fn fill(
     spread(&kinds, range)
 }
 
+/// Gives each room its least width, and shares the rest among the rooms by how much wider each may be.
 fn spread(kinds: &[RoomKind], (start, end): (i32, i32)) -> Vec<(RoomKind, i32, i32)> {
     let least: i32 = kinds.iter().map(|kind| widths(*kind).0).sum();
     let give: i32 = kinds.iter().map(|kind| widths(*kind).1 - widths(*kind).0).sum();

@@ -50,7 +50,7 @@ proptest! {
     }
 
     #[test]
-    fn homes_have_what_homes_have(seed: u64) {
+    fn layouts_have_the_rooms_of_a_home(seed: u64) {
         let layout = lay_out(seed);
         let count = |kind| layout.rooms.iter().filter(|room| room.kind == kind).count();
         for kind in [RoomKind::LivingRoom, RoomKind::Kitchen, RoomKind::Entryway, RoomKind::Hallway] {

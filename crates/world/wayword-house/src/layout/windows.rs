@@ -1,4 +1,4 @@
-//! Puts windows into outer walls.
+//! Puts windows into outer walls, at equal distances.
 
 use super::super::{
     model::{Opening, Room, RoomKind, STOREY_CM, Window},

@@ -1,4 +1,4 @@
-//! What casts shadow: each piece of furniture as a few boxes.
+//! Turns each piece of furniture into a few boxes that cast its shadow, and measures how much light they block.
 
 use super::{
     super::{
@@ -19,11 +19,12 @@ pub(super) struct Block {
     pub(super) high: Vec3,
 }
 
-/// Thickness of table tops and seats as they cast shadow, centimetres: more than they have, so that lamps' soft shadows
-/// are dark.
+/// Thickness of the boxes of table tops and seats, centimetres: more than the real thickness, because only a long stretch
+/// within a box blocks all light of a lamp.
 const TOP_CM: i32 = 10;
 
-/// The boxes of a piece; none where it is flat, hangs on a wall, is of glass, or is itself a lamp at the ceiling.
+/// The boxes of a piece. There are none for a piece that is flat, hangs on a wall, is made of glass, or is a lamp at the
+/// ceiling.
 pub(super) fn blocks(piece: &Furniture) -> Vec<Block> {
     use FurnitureKind as K;
     let (area, height) = (piece.footprint, piece.height_cm);
@@ -90,8 +91,9 @@ fn feet(area: &RectCm) -> [RectCm; 4] {
         .map(|(x, y)| leg(x, y))
 }
 
-/// How much of the light on a straight way is held back, 0..=1. `soft` is the length within a box that holds back all of
-/// it, metres: it makes the edge of the shadow soft. Boxes of the piece `own` do not count.
+/// The share of light that boxes block on the straight line from `from` to `from + way`, 0..=1. A stretch of `soft` metres
+/// within a box blocks all of it and a shorter one a part, which makes the edge of the shadow soft. Boxes of the piece
+/// `own` do not count.
 pub(super) fn blocked(blocks: &[Block], own: Option<u32>, from: Vec3, way: Vec3, soft: f32) -> f32 {
     let length = way.length();
     let per_step = way.recip();

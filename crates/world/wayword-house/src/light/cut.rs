@@ -1,7 +1,8 @@
-//! Cuts surfaces where the light on them changes, because light is stored at corners only.
+//! Cuts the triangles of a surface where the light on it changes, because light is stored at corners only.
 //!
-//! Whether an edge is cut depends on its two ends alone. So two triangles with a common edge agree, and no crack opens
-//! between them.
+//! An edge is cut in its middle if the light there differs from the mean of its ends; this is repeated with the halves.
+//! The decision depends on the two ends alone. So two triangles with a common edge agree, and no crack opens between
+//! them.
 
 use super::super::shapes::Part;
 use glam::Vec3;
@@ -10,15 +11,15 @@ use std::collections::{BTreeMap, HashMap};
 /// Light at a place with a normal, as factors.
 pub(in super::super) type Factors = [f32; 3];
 
-/// The light may differ by this much from what the ends of an edge tell.
+/// The light on an edge may differ by this much from the value interpolated between its ends.
 const TOLERANCE: f32 = 0.045;
-/// Texture coordinates nearer than this are the same.
+/// Texture coordinates nearer to each other than this count as equal.
 const SAME_TEXEL: f32 = 1e-4;
-/// Where the light differs by this much, as at the edge of a sun patch, pieces are half as long.
+/// Where the light differs by this much, as at the edge of a patch of sunlight, pieces are cut to half the finest length.
 const SHARP: f32 = 0.12;
 /// Edges longer than this are tried at three places instead of one, metres.
 const LONG_M: f32 = 0.45;
-/// How often a triangle is cut at most; this only bounds the work.
+/// Most times that a triangle and its pieces are cut; this only bounds the work.
 const DEEPEST: u32 = 12;
 
 /// How finely surfaces are cut, metres.
@@ -26,7 +27,7 @@ const DEEPEST: u32 = 12;
 pub(in super::super) struct Grain {
     /// Where the light changes, down to about this length.
     pub(in super::super) finest_m: f32,
-    /// No edge stays longer than this. A shadow in the middle of a wider piece would not be found.
+    /// Every longer edge is cut. A shadow in the middle of a wider piece would be missed.
     pub(in super::super) widest_m: f32,
 }
 
@@ -47,14 +48,14 @@ pub(in super::super) fn cut(part: &mut Part, grain: Grain, light: impl Fn(Vec3, 
     cutter.colours
 }
 
-/// Makes corners with the same place, normal and part of the texture one: their light is then computed once.
+/// Merges corners that have the same place, normal and texture coordinates, so that their light is computed only once.
 fn weld(part: &mut Part) {
     let Part { positions, normals, uvs, triangles, .. } = part;
     let mut first: HashMap<[u32; 6], usize> = HashMap::with_capacity(positions.len());
     let mut kept = 0;
     let mut moved = Vec::with_capacity(positions.len());
     for at in 0..positions.len() {
-        // Adding zero makes one number of the two zeros.
+        // Adding zero turns -0.0 into 0.0, so that both have the same bits.
         let [p, n] = [positions[at] + Vec3::ZERO, normals[at] + Vec3::ZERO].map(|v| v.to_array().map(f32::to_bits));
         let other = *first.entry([p[0], p[1], p[2], n[0], n[1], n[2]]).or_insert(kept);
         let same = other < kept && uvs[other].distance_squared(uvs[at]) < SAME_TEXEL * SAME_TEXEL;
@@ -70,6 +71,7 @@ fn weld(part: &mut Part) {
     triangles.iter_mut().flatten().for_each(|corner| *corner = moved[*corner as usize]);
 }
 
+/// A part while it is being cut.
 struct Cutter<'a, L> {
     part: &'a mut Part,
     colours: Vec<Factors>,
@@ -80,6 +82,7 @@ struct Cutter<'a, L> {
 }
 
 impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
+    /// Cuts a triangle at the middles of those edges that need it: into one to four pieces.
     fn pieces(&mut self, [a, b, c]: [u32; 3]) -> Vec<[u32; 3]> {
         match [self.middle(a, b), self.middle(b, c), self.middle(c, a)] {
             [None, None, None] => vec![[a, b, c]],
@@ -93,6 +96,7 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
         }
     }
 
+    /// The corner in the middle of an edge, made when it is first needed; `None` if the edge stays whole.
     fn middle(&mut self, a: u32, b: u32) -> Option<u32> {
         let edge = (a.min(b), a.max(b));
         if let Some(known) = self.middles.get(&edge) {
@@ -103,7 +107,8 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
         made
     }
 
-    /// The two ends may lie in either order, so everything here is the same both ways.
+    /// Decides whether an edge is cut, and adds the new corner. The result is the same for both orders of the ends, because
+    /// two triangles run along their common edge in opposite directions.
     fn cut_edge(&mut self, a: usize, b: usize) -> Option<u32> {
         let length = (self.part.positions[a] - self.part.positions[b]).length();
         let (finest, widest) = (self.grain.finest_m, self.grain.widest_m);
@@ -134,13 +139,14 @@ impl<L: Fn(Vec3, Vec3) -> Factors> Cutter<'_, L> {
         (0..3).map(|channel| (self.colours[a][channel] - self.colours[b][channel]).abs()).fold(0.0, f32::max)
     }
 
+    /// Place, normal and light of a point on an edge; `share` is 0 at `a` and 1 at `b`.
     fn between(&self, a: usize, b: usize, share: f32) -> (Vec3, Vec3, Factors) {
         let at = self.part.positions[a] * (1.0 - share) + self.part.positions[b] * share;
         let normal = (self.part.normals[a] * (1.0 - share) + self.part.normals[b] * share).normalize_or_zero();
         (at, normal, (self.light)(at, normal))
     }
 
-    /// How much the light at a place of an edge differs from what its ends tell.
+    /// How much the light at a point of an edge differs from the value interpolated between its ends.
     fn strays(&self, a: usize, b: usize, share: f32, colour: Factors) -> f32 {
         let told = |channel: usize| self.colours[a][channel] * (1.0 - share) + self.colours[b][channel] * share;
         (0..3).map(|channel| (colour[channel] - told(channel)).abs()).fold(0.0, f32::max)

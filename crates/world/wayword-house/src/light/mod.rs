@@ -1,7 +1,8 @@
-//! Light that is baked into mesh corners: from the sun, windows and lamps, with the shadows that furniture casts.
+//! Computes the light of a room from its sun, windows and lamps, with the shadows of furniture. The light is baked: it is
+//! stored once at the corners of the meshes, so that drawing needs no lamps.
 //!
-//! The renderer multiplies colours as they are stored. So light is computed linearly, and its square root is stored (a
-//! gamma of 2, which needs no mathematics library).
+//! The renderer multiplies gamma-encoded colours. So light is computed linearly, and its square root is stored (a gamma
+//! of 2, which needs no mathematics library).
 
 mod casters;
 mod cut;
@@ -13,21 +14,22 @@ pub(super) use cut::{Factors, Grain, cut};
 use glam::Vec3;
 use sun::{Aperture, is_free, towards_sun, wings};
 
-/// Light of a room without any lamp.
+/// The light that reaches every surface, also without lamps and windows.
 const AMBIENT: f32 = 0.30;
 /// How far the shadow of an inner edge reaches, metres.
 const EDGE_M: f32 = 0.55;
 /// How far the dark rim around a piece of furniture reaches, metres.
 const CONTACT_M: f32 = 0.25;
-/// The sun where it falls straight onto a surface.
+/// Sunlight that falls at a right angle onto a surface.
 const SUN: f32 = 1.5;
-/// No surface gets more light than this.
+/// Most light that a surface gets.
 const BRIGHTEST: f32 = 1.8;
-/// Light fainter than this casts no shadow, which saves the search for what stands in its way.
+/// Light fainter than this casts no shadow, which saves the search for obstacles.
 const FAINT: f32 = 0.02;
-/// Lamps where there is a window too: by day they add little.
+/// The strength of lamps in a room with windows: by day they add less.
 const LAMPS_BY_DAY: f32 = 0.6;
-/// The length within a piece that holds back all of a lamp's or a window's light, metres.
+/// Light of a lamp or a window is blocked fully after this length within a piece, metres. Shorter stretches block a part
+/// of it, which makes shadows soft.
 const SOFT_M: f32 = 0.12;
 
 /// The light of one room.
@@ -37,7 +39,7 @@ pub(super) struct RoomLight {
     high: Vec3,
     lamps: Vec<Vec3>,
     windows: Vec<Daylight>,
-    /// What casts shadow.
+    /// The boxes that cast shadows.
     blocks: Vec<Block>,
     /// Unit vector towards the sun.
     sun: Vec3,
@@ -113,6 +115,7 @@ impl RoomLight {
         self.factors(at, normal, own, 1.0)
     }
 
+    /// All light at a place with a normal, per channel, encoded for storage. `shade` dims everything but the sun.
     fn factors(&self, at: Vec3, normal: Vec3, own: Option<u32>, shade: f32) -> Factors {
         let toned = AMBIENT * (0.8 + 0.12 * normal.z + 0.1 * normal.x.abs());
         let strength = if self.windows.is_empty() { 1.0 } else { LAMPS_BY_DAY };
@@ -142,6 +145,7 @@ impl RoomLight {
         })
     }
 
+    /// Soft light from a window, dimmed by the furniture between.
     fn daylight(&self, at: Vec3, normal: Vec3, own: Option<u32>, window: &Daylight) -> f32 {
         let towards = window.middle - at;
         let distance_sq = towards.length_squared().max(0.04);
@@ -181,6 +185,7 @@ fn fading(distance: f32, reach: f32) -> f32 {
     left * left
 }
 
+/// The light of a lamp at a place with a normal, without shadows.
 fn lit(at: Vec3, normal: Vec3, lamp: Vec3) -> f32 {
     let towards = lamp - at;
     let distance_sq = towards.length_squared().max(0.01);

@@ -1,4 +1,4 @@
-//! The sun: where it stands, and through which windows it shines into a room.
+//! Chooses the direction of the sun for a house, and finds how it shines into a room through the windows.
 
 use super::{
     super::{
@@ -14,11 +14,11 @@ use glam::Vec3;
 const SOFT_M: f32 = 0.04;
 /// Half the width of a window's bars in the sun, metres.
 const HALF_BAR_M: f32 = 0.02;
-/// How far outside something can stand in the sun, metres.
+/// How far outside another part of the house can shade a window, metres.
 const FAR_M: f32 = 40.0;
 
-/// Unit vector towards the sun of a house. It shines on two sides, never along a wall, and where possible on sides that
-/// have many windows.
+/// Unit vector towards the sun of a house. The sun shines on two sides of the house, never along a wall, and if possible on
+/// sides that have many windows.
 pub(in super::super) fn towards_sun(house: &House) -> Vec3 {
     let mut dice = Dice::new(house.seed, &["sun"]);
     let (x, y) = dice.pick([(1.0, 2.0), (2.0, 1.0), (2.0, 3.0), (3.0, 2.0)]);
@@ -33,7 +33,7 @@ pub(in super::super) fn towards_sun(house: &House) -> Vec3 {
     (level + Vec3::Z * level.length() * rise).normalize_or_zero()
 }
 
-/// Area of the windows that look towards the sun, square centimetres.
+/// Area of the windows that face the sun, square centimetres.
 fn lit_cm2(house: &House, sun: Vec3) -> i64 {
     let faces = |window: &&Window| {
         let wall = house.rooms[window.room].outline.wall_of(&window.span);
@@ -61,7 +61,8 @@ pub(super) struct Aperture {
 }
 
 impl Aperture {
-    /// `None` where the window looks away from the sun. `inward` points from the wall into the room.
+    /// The sunlit opening of a window; `None` if the window faces away from the sun. `inward` points from the wall into the
+    /// room.
     pub(super) fn of(window: &Window, inward: (i32, i32), sun: Vec3) -> Option<Self> {
         let step = inward.0 + inward.1;
         let out = Vec3::new(-inward.0 as f32, -inward.1 as f32, 0.0);
@@ -76,7 +77,8 @@ impl Aperture {
         })
     }
 
-    /// Where the way from a place to the sun crosses the pane, and how much of the sun passes the window, 0..=1.
+    /// The point where the line from a place to the sun crosses the pane, and how much of the sun passes the window, 0..=1.
+    /// `None` if the line misses the window.
     pub(super) fn passes(&self, at: Vec3, sun: Vec3) -> Option<(Vec3, f32)> {
         let [pane, inner] = self.planes.map(|plane| self.crossing(at, sun, plane));
         let (pane, inner) = (pane?, inner.unwrap_or(at));
@@ -107,7 +109,7 @@ impl Aperture {
     }
 }
 
-/// The other rooms of a house, which can stand between a window and the sun.
+/// The other rooms of a house, as boxes that can lie between a window and the sun.
 pub(super) fn wings(house: &House, index: usize) -> Vec<Block> {
     let others = house.rooms.iter().enumerate().filter(|(other, _)| *other != index);
     let block = |(_, room): (usize, &super::super::model::Room)| {
@@ -121,7 +123,7 @@ pub(super) fn wings(house: &House, index: usize) -> Vec<Block> {
     others.map(block).collect()
 }
 
-/// Whether other rooms leave the sun to a place on a pane.
+/// Whether the sun reaches a place on a pane past the other rooms.
 pub(super) fn is_free(wings: &[Block], pane: Vec3, sun: Vec3) -> bool {
     blocked(wings, None, pane, sun * FAR_M, 0.2) < 0.5
 }

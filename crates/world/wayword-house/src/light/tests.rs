@@ -30,8 +30,8 @@ fn things_shade_the_floor_under_them() {
     assert!(shaded < 0.8 * empty(&house, table.room).on_shell(under, Vec3::Z)[1]);
 }
 
-/// Where the sun through a place of a window falls onto the floor. The place is given by shares of the window's width and
-/// height; a share outside 0..1 lies beside the window.
+/// The place on the floor that the sun reaches through a place of a window. The latter is given by shares of the window's
+/// width and height; a share outside 0..1 lies outside the window.
 fn on_floor(window: &Window, share_along: f32, share_up: f32, sun: Vec3, floor: f32) -> Vec3 {
     let span = window.span;
     let along = metres(span.from) + metres(span.length()) * share_along;

@@ -8,7 +8,7 @@ fn small() -> HousePlatform {
 }
 
 #[test]
-fn scenes_are_named_by_their_seed_and_by_nothing_else() {
+fn scenes_have_only_the_name_of_their_seed() {
     let platform = small();
     let scenes = platform.scenes().unwrap();
     assert_eq!(scenes.len(), 20);
@@ -76,7 +76,7 @@ fn a_picture_that_cannot_be_drawn_is_not_called_a_missing_scene() {
 }
 
 #[test]
-fn who_stands_in_a_doorway_is_in_the_room_ahead() {
+fn an_eye_in_a_doorway_is_in_the_room_ahead() {
     let platform = small();
     let scene = HousePlatform::scene_of(1).unwrap();
     let home = platform.home(&scene).unwrap();
@@ -108,7 +108,7 @@ fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
-/// A change in how houses are generated changes these numbers. Say so in the changelog, because recorded paths name
+/// A change in how houses are generated changes these numbers. Note it in the changelog, because recorded paths name
 /// places in these houses.
 #[test]
 fn a_house_and_its_picture_are_the_same_on_every_machine() {

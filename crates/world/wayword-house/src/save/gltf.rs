@@ -1,4 +1,4 @@
-//! A house as binary glTF 2.0: one node for each object, unlit, with its light in `COLOR_0`.
+//! Writes a house as binary glTF 2.0: one node for each object, unlit, with its baked light in `COLOR_0`.
 
 use super::{
     super::{drawing, model::House, names::scene_name, objects},
@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use wayword_render::{Material, Mesh, Texture};
 
-/// This program multiplies colours as they are stored; glTF multiplies them in linear light.
+/// Converts a factor for gamma-encoded colours, which this program multiplies, into one for linear light, which glTF
+/// multiplies.
 fn linear(stored: f32) -> f32 {
     libm::powf(stored, 2.2)
 }

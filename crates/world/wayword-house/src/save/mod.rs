@@ -1,5 +1,5 @@
 //! Saves a house for other programs: glTF for its looks, JSON for its ground, and the further files that AI Habitat
-//! reads.
+//! needs.
 
 mod buffer;
 mod gltf;
@@ -23,7 +23,7 @@ pub enum SaveError {
     File {
         /// Which file.
         file: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// A texture that cannot be encoded.
@@ -31,7 +31,7 @@ pub enum SaveError {
     Texture {
         /// Its index.
         texture: usize,
-        /// What the encoder says.
+        /// The encoder's error.
         source: image::ImageError,
     },
     /// A house that cannot be written as JSON.
@@ -40,7 +40,7 @@ pub enum SaveError {
     /// A viewpoint graph that is wrong.
     #[error("the house's viewpoint graph is wrong: {0}")]
     Graph(#[from] GraphError),
-    /// More data than one GLB can hold.
+    /// More data than fits into one GLB file.
     #[error("the house takes {bytes} bytes, but a GLB file holds 4 GiB at most")]
     TooLarge {
         /// How many it takes.

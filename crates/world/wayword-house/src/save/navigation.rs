@@ -1,4 +1,4 @@
-//! The navigation data of a house: rooms, objects, walkable cells, viewpoint graph.
+//! Writes the navigation data of a house: rooms, objects, walkable cells, viewpoint graph.
 
 use super::{
     super::{

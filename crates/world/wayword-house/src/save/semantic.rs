@@ -1,5 +1,5 @@
-//! The semantics of a house as AI Habitat reads them: a mesh in which each object has its own colour, a list of what
-//! each colour means (HM3D's semantics, `*.semantic.glb` and `*.semantic.txt`), and the stage configuration that names
+//! Writes the semantics of a house as AI Habitat reads them: a mesh in which each object has its own colour, a list of the
+//! objects by colour (HM3D's semantics, `*.semantic.glb` and `*.semantic.txt`), and the stage configuration that names
 //! these files.
 
 use super::{
@@ -55,7 +55,8 @@ pub fn semantic_txt(house: &House) -> String {
     text
 }
 
-/// A `.stage_config.json` for files of this name. It says that y is up, as in glTF, because Habitat does not assume so.
+/// A `.stage_config.json` for files of this name. It declares that y is up, as in glTF, because Habitat assumes another
+/// axis.
 pub(super) fn stage_config(name: &str, has_navmesh: bool) -> Value {
     let mut config = json!({
         "render_asset": format!("{name}.glb"),

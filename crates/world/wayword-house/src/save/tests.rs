@@ -21,7 +21,7 @@ fn vertices(file: &Gltf) -> Vec<([f32; 3], [f32; 3])> {
 }
 
 #[test]
-fn a_saved_house_is_read_back_by_others() {
+fn a_saved_house_can_be_read_by_gltf_libraries() {
     let house = generate(4);
     let file = Gltf::from_slice(&glb(&house).unwrap()).unwrap();
     let drawing = drawing::draw(&house);
@@ -72,7 +72,7 @@ fn navigation_data_names_rooms_objects_and_ways() {
 }
 
 #[test]
-fn every_object_has_a_colour_of_its_own_and_every_vertex_that_of_its_object() {
+fn semantic_glb_gives_every_object_its_own_colour() {
     let house = generate(4);
     let text = semantic_txt(&house);
     let mut colours = std::collections::BTreeSet::new();
@@ -94,7 +94,7 @@ fn every_object_has_a_colour_of_its_own_and_every_vertex_that_of_its_object() {
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_named() {
+fn save_house_names_a_missing_folder() {
     let error = save(&generate(4), std::path::Path::new("/nowhere/at all"), None).unwrap_err().to_string();
     assert!(error.contains("/nowhere/at all/house2-4.glb"), "{error}");
 }

@@ -1,4 +1,4 @@
-//! Builds meshes from blocks, cushions, turned and bent parts.
+//! The simple parts that shapes are built from: boxes, cushions, tubes, balls, rods, discs.
 
 use super::super::surface::Surface;
 use glam::{Vec2, Vec3};
@@ -16,7 +16,8 @@ pub(crate) struct Part {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// A thing, metres; its footprint is centred on the origin, it stands on z = 0, and its front looks along -y.
+/// The mesh of one thing, metres. A piece of furniture is centred on the origin, rests on z = 0, and faces -y; walls and
+/// other parts of the house are in the world frame.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Shape {
     pub(crate) parts: Vec<Part>,
@@ -47,7 +48,7 @@ fn around(step: usize, sides: usize) -> (f32, f32) {
 }
 
 impl Shape {
-    /// The part with this surface; a new one where there is none yet.
+    /// The part with this surface; a new one if there is none yet.
     pub(crate) fn part(&mut self, surface: Surface) -> &mut Part {
         let at = self.parts.iter().position(|part| part.surface == surface).unwrap_or_else(|| {
             self.parts.push(Part::new(surface));
@@ -212,7 +213,7 @@ impl Shape {
         }
     }
 
-    /// A disc that looks along `axis`.
+    /// A disc that faces along `axis`.
     pub(crate) fn disc(&mut self, surface: Surface, centre: Vec3, axis: Vec3, radius: f32) {
         let side = if axis.z.abs() < 0.9 { Vec3::Z.cross(axis) } else { Vec3::X }.normalize_or_zero();
         let up = axis.cross(side);

@@ -1,5 +1,5 @@
-//! Small things on surfaces. They are parts of the piece that they lie on, and its variant says which they are, so that
-//! they get no labels: an instruction names the table and not the cup on it.
+//! Small things on tables and shelves. They belong to the piece that they lie on, and its variant chooses them. So they get
+//! no labels of their own: an instruction names the table and not the cup on it.
 
 use super::{
     super::{
@@ -13,7 +13,7 @@ use glam::Vec3;
 const SPINES: [[u8; 3]; 6] =
     [[170, 50, 44], [44, 84, 140], [226, 196, 110], [60, 110, 74], [236, 232, 222], [96, 66, 110]];
 
-/// A small thing that lies or stands on a surface.
+/// A small thing on a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Thing {
     Books,
@@ -79,7 +79,7 @@ pub(super) fn put(shape: &mut Shape, thing: Thing, at: Vec3, mixed: usize) {
     }
 }
 
-/// A box of half width, half depth and height, that stands on a place.
+/// A box on a surface, centred on a place; `w`, `d` and `h` are its half width, half depth and height.
 fn slab(shape: &mut Shape, surface: Surface, at: Vec3, [w, d, h]: [f32; 3]) {
     shape.block(surface, [at.x - w, at.x + w], [at.y - d, at.y + d], [at.z, at.z + h]);
 }
@@ -128,7 +128,7 @@ fn bowl(shape: &mut Shape, at: Vec3, china: Surface) {
     shape.turned(china, (at.x, at.y), 1.0, &profile);
 }
 
-/// An open laptop whose screen shows something.
+/// An open laptop with a bright screen.
 fn laptop(shape: &mut Shape, at: Vec3) {
     let case = Surface::metal(Colour::Silver);
     slab(shape, case, at, [0.16, 0.11, 0.014]);
@@ -185,7 +185,7 @@ fn candles(shape: &mut Shape, at: Vec3) {
     }
 }
 
-/// A framed photograph that stands.
+/// A photograph in a standing frame.
 fn photo(shape: &mut Shape, at: Vec3, mixed: usize) {
     let frame = Surface::wood([Colour::Black, Colour::White, Colour::Gold, Colour::Wooden][mixed % 4]);
     shape.block(frame, [at.x - 0.075, at.x + 0.075], [at.y, at.y + 0.014], [at.z, at.z + 0.2]);
@@ -198,7 +198,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn things_stand_on_the_surface_and_within_it() {
+    fn scatter_items_puts_things_on_the_surface_and_within_it() {
         let all = [
             Thing::Books,
             Thing::Cup,

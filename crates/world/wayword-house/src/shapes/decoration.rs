@@ -42,7 +42,7 @@ pub(super) fn radiator(look: &Look) -> Shape {
     shape
 }
 
-/// The painting whose main colour is the piece's colour.
+/// The number of the painting that has this main colour.
 fn art_of(colour: Colour) -> u8 {
     let order = [
         Colour::Blue,
@@ -81,7 +81,7 @@ pub(super) fn whiteboard(look: &Look) -> Shape {
     shape
 }
 
-/// A round dial whose hands stand at ten past ten.
+/// A round dial with its hands at ten past ten.
 pub(super) fn clock(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let (_, hd) = look.half();

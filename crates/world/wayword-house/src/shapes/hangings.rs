@@ -1,4 +1,4 @@
-//! What hangs on walls besides paintings and mirrors: photographs, cloths, coats, boards.
+//! Builds things on walls other than paintings and mirrors: photographs, cloths, coats, boards.
 
 use super::{
     super::{
@@ -39,7 +39,7 @@ pub(super) fn photos(look: &Look) -> Shape {
         let (column, row) = (cell % columns, cell / columns);
         let mixed = cell * 7 + look.variant as usize;
         let frame = Surface::wood(FRAMES[(mixed / 3) % FRAMES.len()]);
-        // Each second frame is a little smaller, as such walls grow over the years.
+        // Every second frame is a little smaller, as on a wall that was filled over the years.
         let (inset, bar) = (if mixed.is_multiple_of(2) { 0.012 } else { 0.024 }, 0.022);
         let (x0, z0) = (-hw + w * column as f32 + inset, h * row as f32 + inset);
         let (x1, z1) = (x0 + w - 2.0 * inset, z0 + h - 2.0 * inset);

@@ -1,4 +1,4 @@
-//! The shapes of furniture.
+//! Builds the shape of every kind of furniture from simple parts: boxes, cushions, turned and bent pieces.
 
 mod bathroom;
 mod beds;

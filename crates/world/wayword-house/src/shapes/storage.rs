@@ -43,7 +43,7 @@ fn fronts(shape: &mut Shape, look: &Look, columns: usize, rows: usize, (z0, z1):
     }
 }
 
-/// A TV stand or sideboard: a long low cabinet.
+/// A sideboard: a long low cabinet.
 pub(super) fn low_cabinet(look: &Look) -> Shape {
     let mut shape = Shape::default();
     let ((hw, hd), wood) = (look.half(), Surface::wood(look.colour));

@@ -27,7 +27,7 @@ pub(super) fn table(look: &Look) -> Shape {
     shape
 }
 
-/// Dressed as such tables are: what lies on it depends on its size.
+/// A table with things on it, which depend on its size.
 pub(super) fn laid_table(look: &Look) -> Shape {
     let mut shape = table(look);
     let (hw, hd) = look.half();

@@ -1,4 +1,4 @@
-//! Frames and leaves of doors.
+//! Builds the frames and leaves of doors.
 
 use super::super::{
     colour::Colour,

@@ -1,4 +1,4 @@
-//! Walls, floors, doors, windows and stairs as meshes, in the world frame.
+//! Builds the meshes of walls, floors, doors, windows and stairs, in the world frame.
 
 mod doors;
 mod shell;

@@ -1,4 +1,4 @@
-//! The inside of a room: floor, ceiling, and walls with holes.
+//! Builds the inside of a room: floor, ceiling, and walls with holes for doors and windows.
 
 use super::super::{
     model::{CEILING_CM, FloorFinish, HALF_WALL_CM, House, RoomKind},

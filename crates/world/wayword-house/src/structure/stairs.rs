@@ -1,4 +1,4 @@
-//! Steps, landing and railing.
+//! Builds the steps, the landing and the railing of stairs.
 
 use super::super::{
     colour::Colour,
@@ -39,7 +39,7 @@ fn slab(shape: &mut Shape, stairs: &Stairs, (tread, side): (Surface, Surface), l
     shape.block(tread, x, y, [metres(top) - 0.04, metres(top)]);
 }
 
-/// A handrail on balusters beside each flight, at the middle of the well.
+/// A handrail on balusters along each flight, at the middle of the well.
 pub(in super::super) fn railing(stairs: &Stairs) -> Shape {
     let mut shape = Shape::default();
     let (rail, white) = (Surface::wood(Colour::Brown), Surface::plain([244, 243, 240]));

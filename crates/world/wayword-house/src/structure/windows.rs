@@ -1,4 +1,4 @@
-//! Windows: a frame, a cross, and a picture of the view outside.
+//! Builds windows: a frame, a cross, and a picture of the view outside on the pane.
 
 use super::super::{
     model::{HALF_WALL_CM, House, RoomKind, STOREY_CM, Window},
@@ -17,7 +17,7 @@ const TOP_M: f32 = 2.4;
 /// Height of the picture, metres.
 const TALL_M: f32 = 2.1;
 
-/// A window as it is seen from its room; `outlooks` are those of the walls in their order.
+/// A window as seen from its room. `outlooks` are the views of the four sides, in the order of [`Wall::ALL`].
 pub(in super::super) fn window(house: &House, window: &Window, outlooks: &[Outlook; 4]) -> Shape {
     let mut shape = Shape::default();
     let wall = house.rooms[window.room].outline.wall_of(&window.span).unwrap_or(Wall::North);

@@ -1,6 +1,7 @@
-//! Pictures that are laid on surfaces. They are computed, not read from files.
+//! Computes the textures of surfaces. No picture is read from a file.
 //!
-//! Patterns whose colour comes from their surface are light grey, because a texture can only darken what it multiplies.
+//! If the surface provides the colour, the texture is light grey, because the two are multiplied and a texture can only
+//! darken.
 
 mod noise;
 mod outside;
@@ -71,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pattern_but_the_plain_one_has_something_to_see() {
+    fn every_texture_but_the_plain_one_shows_a_pattern() {
         for pattern in Pattern::ALL {
             let texture = of(pattern);
             let differs = texture.texels.iter().any(|texel| *texel != texture.texels[0]);

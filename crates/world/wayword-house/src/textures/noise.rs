@@ -1,4 +1,4 @@
-//! Noise that repeats with the texture.
+//! Noise for textures. It repeats at the texture's edges, so that tiled textures show no seams.
 
 /// A number in 0..1 that depends only on its place (and on `salt`).
 pub(super) fn hash(x: i32, y: i32, salt: u32) -> f32 {

@@ -1,6 +1,6 @@
-//! What one sees out of windows. Each picture repeats sideways, because every window of a side shows its own part.
+//! Paints the views out of windows. Each picture repeats sideways, because every window of a side shows its own part.
 //!
-//! The horizon is at eye level. From upstairs (`above`) the ground and what stands on it lie lower.
+//! The horizon is at eye level. From upstairs (`above`) the ground and all things on it lie lower.
 
 use super::{
     super::outlook::Outlook,
@@ -40,7 +40,7 @@ fn grass(u: f32, v: f32, top: f32) -> Rgb {
     mix([140.0, 182.0, 88.0], [84.0, 136.0, 60.0], (v - top) * 2.0 + smooth(u, v, (48, 32), 35) * 0.3)
 }
 
-/// A tree whose crown has its middle at a place; the trunk reaches down to `foot`.
+/// A tree; `(x, y)` is the middle of its crown, and the trunk reaches down to `foot`. `None` outside the tree.
 fn tree(u: f32, v: f32, (x, y): (f32, f32), radius: f32, foot: f32) -> Option<Rgb> {
     let du = beside(u, x);
     let ragged = radius * (0.78 + 0.44 * smooth(u, v, (28, 28), 33));

@@ -1,4 +1,4 @@
-//! Patterns of materials, which repeat over a surface.
+//! Paints the patterns of materials, which repeat over a surface.
 
 use super::{
     Rgb,

@@ -1,4 +1,4 @@
-//! Pictures that show something: books, glass, fire, screens.
+//! Paints pictures of things: books, glass, fire, screens.
 
 use super::{
     Rgb,
