@@ -1,7 +1,7 @@
-//! Where paths and views come from: Matterport3D, and any simulator as a child process.
+//! Two platforms: Matterport3D, and any simulator as a child process.
 //!
-//! [`matterport`] reads Matterport3D's buildings as the dataset, its simulator and REVERIE provide them. [`process`]
-//! asks another program.
+//! [`matterport`] reads Matterport3D's buildings from the files of the dataset, its simulator and REVERIE. [`process`]
+//! gets paths and views from another program, over its standard input and output.
 
 pub mod matterport;
 pub mod process;

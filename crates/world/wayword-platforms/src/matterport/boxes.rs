@@ -1,8 +1,8 @@
-//! REVERIE's `BBox/SCAN_VIEWPOINT.json`: the objects near a viewpoint, with their boxes in the simulator's 36 views.
+//! Reads REVERIE's `BBox/SCAN_VIEWPOINT.json`: the objects near a viewpoint, with their boxes in the simulator's 36 views.
 //!
 //! Format (REVERIE, `tasks/REVERIE/data/BBox`): `{viewpoint: {objId: {name, visible_pos: [view 0..35], bbox2d: [[x, y,
 //! w, h], ...]}}}`. View `i` looks along `(i mod 12) * 30` degrees with elevation `(i / 12 - 1) * 30` degrees; boxes
-//! are in pixels of its 640x480 picture, whose vertical field of view is 60 degrees.
+//! are in pixels of its 640x480 picture with a vertical field of view of 60 degrees.
 
 use super::read;
 use serde_json::{Map, Value};
@@ -29,7 +29,7 @@ pub(crate) struct Listed {
     pub(crate) object: ObjectId,
     /// In plain words; `None` if the annotators' name has no plain words.
     pub(crate) name: Option<String>,
-    /// Where it is seen; empty if it is listed but hidden.
+    /// Its boxes in the views that show it; empty if it is listed but hidden.
     pub(crate) boxes: Vec<SeenBox>,
 }
 

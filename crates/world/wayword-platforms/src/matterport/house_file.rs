@@ -1,8 +1,8 @@
-//! `SCAN.house`: levels, regions, panoramas and objects of a building.
+//! Reads `SCAN.house`: levels, regions, panoramas and objects of a building.
 //!
-//! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line; its first word is
-//! its kind. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts in `H` are not
-//! used.
+//! Format: Matterport3D's `data_organization.md`, "house_segmentations": ASCII, one record per line, and the first word
+//! is the kind of the record. Read here: `L` levels, `R` regions, `P` panoramas, `O` objects, `C` categories. The counts
+//! in `H` are not used.
 
 use super::read;
 use glam::DVec3;
@@ -25,6 +25,7 @@ pub(crate) struct House {
     pub(crate) objects: Vec<HouseObject>,
 }
 
+/// A region of a building: the level it belongs to, and the letter of its kind of room.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Region {
     level: i64,
@@ -37,7 +38,7 @@ pub(crate) struct HouseObject {
     pub(crate) id: ObjectId,
     /// In plain words; `None` if the annotators gave no name.
     pub(crate) name: Option<String>,
-    /// Index of the region in which it stands.
+    /// Index of its region.
     pub(crate) region: i64,
     /// Centre of its box, metres, world frame.
     pub(crate) centre: DVec3,
@@ -53,12 +54,12 @@ impl House {
         Some(lower.count() as u32 + 1)
     }
 
-    /// The letter of the region in which a viewpoint stands.
+    /// The letter of a viewpoint's region.
     pub(crate) fn room_letter(&self, viewpoint: &ViewpointId) -> Option<char> {
         self.regions.get(self.panoramas.get(viewpoint)?).map(|region| region.letter)
     }
 
-    /// The objects that stand in a viewpoint's region.
+    /// The objects in a viewpoint's region.
     pub(crate) fn objects_around(&self, viewpoint: &ViewpointId) -> impl Iterator<Item = &HouseObject> {
         let region = self.panoramas.get(viewpoint).copied();
         self.objects.iter().filter(move |object| Some(object.region) == region)
@@ -98,6 +99,8 @@ fn parse(text: &str) -> Result<House, String> {
     Ok(house)
 }
 
+/// Adds one line of the file to the house. An object's name is its category, which may come later in the file, so
+/// `objects` are collected with the number of their category.
 fn add(
     record: &Record<'_>,
     house: &mut House,

@@ -1,4 +1,4 @@
-//! What is visible from a viewpoint, from REVERIE's boxes or the `.house` file.
+//! Makes the labels at a viewpoint of Matterport3D, from REVERIE's boxes or else from the `.house` file.
 
 use super::{
     boxes::{Listed, Ray},
@@ -14,9 +14,9 @@ const HOUSE_REACH_M: f64 = 3.0;
 
 /// Labels from REVERIE's boxes; `eye` and `centres` are in the world frame.
 ///
-/// The direction is that of a box that no picture's edge cuts. If every picture cuts the object, it surrounds the
-/// viewer or continues below the lowest view. Then the direction is that of the object's centre, or of the most central
-/// box if the centre is not known. The distance is to the centre.
+/// A label's direction is that of the object's most central box. If the edges of all pictures cut the object, it surrounds
+/// the viewer or continues below the lowest view, and no box shows its direction. Then the direction of its centre is
+/// used, if the centre is known. The distance is to the centre.
 pub(crate) fn from_boxes(listed: &[Listed], eye: DVec3, centres: &BTreeMap<String, DVec3>) -> Vec<Label> {
     let mut labels: Vec<Label> = listed
         .iter()
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_listed_but_not_seen_is_no_label() {
+    fn from_boxes_skips_objects_without_a_box() {
         assert_eq!(from_boxes(&[listed(&[])], DVec3::ZERO, &centres(DVec3::Y)), []);
     }
 }

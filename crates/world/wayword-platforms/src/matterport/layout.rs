@@ -1,4 +1,4 @@
-//! Finds the user's Matterport3D data.
+//! Finds the user's Matterport3D data below a folder, in the places where the tools of its makers put them.
 
 use super::read;
 use std::path::{Path, PathBuf};
@@ -8,18 +8,18 @@ use wayword_core::{PlatformError, SceneId, ViewpointId};
 const VIEWS: usize = 36;
 const HINT: &str = "give --data the folder that holds Matterport3DSimulator's `connectivity` folder";
 
-/// Where REVERIE's boxes may be below the data folder.
+/// Places of REVERIE's boxes below the data folder, in the order in which they are tried.
 const BOXES: [&str; 4] = ["reverie/BBox", "BBox", "matterport/BBox", "REVERIE/BBox"];
 
-/// The folders and files that were found below the data folder.
+/// The folders and files of Matterport3D that exist below the data folder.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     connectivity: PathBuf,
-    /// Folders that hold one folder per scan.
+    /// Folders with one folder per scan.
     scans: Vec<PathBuf>,
     boxes: Option<PathBuf>,
     pub(crate) object_positions: Option<PathBuf>,
-    /// Folders that hold `SCAN/VIEWPOINT/N.jpg`.
+    /// Folders with files `SCAN/VIEWPOINT/N.jpg`.
     views: Vec<PathBuf>,
 }
 
@@ -72,8 +72,8 @@ impl Layout {
         Ok(scenes)
     }
 
-    /// Why the objects of some or all buildings are not known, and what to do: there are no REVERIE boxes, and `.house`
-    /// files for few buildings or none. `None` if objects are known everywhere.
+    /// A warning for a user without REVERIE's boxes and with `.house` files for only some buildings or none: in the rest,
+    /// objects are not known. It ends with advice. `None` if objects are known everywhere.
     pub(crate) fn lack_of_objects(&self, data: &Path) -> Option<String> {
         let scenes = self.scenes().ok()?;
         let houses = scenes.iter().filter(|scene| self.house(scene).is_some()).count();
@@ -179,6 +179,7 @@ fn files_in(folder: &Path) -> Result<Vec<PathBuf>, PlatformError> {
     entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect()
 }
 
+/// Those of `places` below the data folder that are folders.
 fn all(data: &Path, places: &[&str]) -> Vec<PathBuf> {
     places.iter().map(|place| data.join(place)).filter(|folder| folder.is_dir()).collect()
 }
@@ -192,7 +193,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_without_boxes_says_what_it_lacks_and_names_the_folder_that_has_them() {
+    fn lack_of_objects_names_the_folder_above_with_boxes() {
         let above = tempfile::tempdir().unwrap();
         let data = above.path().join("matterport");
         std::fs::create_dir_all(data.join("connectivity")).unwrap();
@@ -211,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_named_with_where_it_was_looked_for() {
+    fn find_data_names_the_places_of_missing_data() {
         let empty = tempfile::tempdir().unwrap();
         let error = Layout::find(empty.path()).unwrap_err().to_string();
         assert!(error.contains("`matterport/connectivity`, `connectivity` or `graph`"), "{error}");

@@ -1,7 +1,7 @@
-//! Matterport3D: real buildings, as the dataset, its simulator and REVERIE provide them.
+//! Matterport3D: real buildings, from the files of the dataset, its simulator and REVERIE.
 //!
-//! What a view shows depends on the files that the user has: photographs (skyboxes or 36-view folders), and labels from
-//! REVERIE's boxes, the `.house` file and the rooms of the viewpoints. Photographs are optional.
+//! The contents of a view depend on the files that the user has. Its picture comes from skyboxes or folders of 36 views,
+//! which are optional. Its labels come from REVERIE's boxes or the `.house` file, and its room from the file of rooms.
 
 mod boxes;
 mod house_file;

@@ -1,4 +1,4 @@
-//! REVERIE's `objpos.json`: the centres of objects, `{scan: {objId: [x, y, z]}}`, metres, world frame.
+//! Reads REVERIE's `objpos.json`: the centres of objects, `{scan: {objId: [x, y, z]}}`, metres, world frame.
 
 use super::read;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! The photographs of a viewpoint, and views made from them.
+//! Reads the photographs of a viewpoint, and makes a view in any direction from them.
 
 use super::{
     layout::{Layout, SkyboxFiles},

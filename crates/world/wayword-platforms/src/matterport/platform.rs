@@ -1,4 +1,4 @@
-//! Matterport3D as a [`Platform`].
+//! Offers Matterport3D as a [`Platform`].
 
 use super::{
     boxes::{self, Listed},
@@ -20,9 +20,9 @@ use wayword_core::{
 };
 use wayword_world::{connectivity::Viewpoint, graph_walk};
 
-/// Number of viewpoints whose boxes are kept in memory.
+/// Number of viewpoints with their boxes in memory.
 const BOXES_KEPT: usize = 256;
-/// Number of viewpoints whose photographs are kept in memory: 5 MB each for small skyboxes, 19 for full ones, 33 for 36
+/// Number of viewpoints with their photographs in memory: 5 MB each for small skyboxes, 19 for full ones, 33 for 36
 /// views.
 const PHOTOGRAPHS_KEPT: usize = 8;
 
@@ -57,8 +57,8 @@ impl Matterport {
         })
     }
 
-    /// A warning that says which files about objects are missing below a folder, and what to do; `None` if none are
-    /// missing, or if the folder holds no buildings.
+    /// A warning that names the files about objects that are missing below a folder, with advice; `None` if none are missing,
+    /// or if the folder contains no buildings.
     #[must_use]
     pub fn lack_of_objects(data: &FilePath) -> Option<String> {
         Layout::find(data).ok()?.lack_of_objects(data)
@@ -82,7 +82,7 @@ impl Matterport {
         })
     }
 
-    /// All objects that are visible from a viewpoint, or `None` if nothing is known about it.
+    /// All objects that are visible from a viewpoint, or `None` if there is no data about its objects.
     fn labels(
         &self,
         id: &SceneId,
@@ -128,6 +128,7 @@ impl Matterport {
     }
 }
 
+/// The viewpoint of this name; an error if the building has none.
 fn known<'a>(id: &SceneId, scene: &'a Scene, viewpoint: &ViewpointId) -> Result<&'a Viewpoint, PlatformError> {
     let found = scene.viewpoints.get(viewpoint);
     found.ok_or_else(|| PlatformError::UnknownViewpoint { scene: id.clone(), viewpoint: viewpoint.clone() })
@@ -226,7 +227,7 @@ impl Platform for Matterport {
         Ok(Some(scene.viewpoints.iter().filter(sees).map(|(name, _)| name.clone()).collect()))
     }
 
-    /// Its labels reach about 2 m.
+    /// False: labels are listed only up to two or three metres from a viewpoint.
     fn lists_everything(&self) -> bool {
         false
     }

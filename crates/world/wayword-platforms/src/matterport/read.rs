@@ -1,4 +1,4 @@
-//! Reads pictures that come from outside, and gathers what reads other files.
+//! Reads picture files of limited size, and re-exports the functions that read other files.
 
 use std::path::Path;
 use wayword_core::{Image, PlatformError};

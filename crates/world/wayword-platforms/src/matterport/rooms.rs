@@ -1,7 +1,7 @@
-//! `panorama_to_region.txt`: the room in which each viewpoint stands.
+//! Reads `panorama_to_region.txt`: the room of each viewpoint.
 //!
-//! One line per panorama: index, viewpoint, region, letter of the region's label (Matterport3D `house_segmentations`,
-//! data organisation, "region labels").
+//! The file has one line per panorama: index, viewpoint, region, letter of the region's label (Matterport3D
+//! `house_segmentations`, data organisation, "region labels").
 
 use super::read;
 use std::{collections::BTreeMap, path::Path};

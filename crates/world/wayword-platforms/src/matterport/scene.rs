@@ -1,4 +1,4 @@
-//! One building in memory: its graph, cameras and rooms.
+//! One building of Matterport3D in memory: its graph, cameras, rooms and objects.
 
 use super::{
     house_file::{self, House},
@@ -27,7 +27,7 @@ pub(crate) struct Scene {
     pub(crate) objects: OnceLock<BTreeMap<ObjectId, Everywhere>>,
 }
 
-/// What all viewpoints of a building list about one object.
+/// One object, collected from REVERIE's lists at all viewpoints of a building.
 #[derive(Debug, Default)]
 pub(crate) struct Everywhere {
     /// In plain words; `None` if the annotators' name has no plain words.
@@ -63,7 +63,7 @@ impl Scene {
         self.rooms.is_some() || self.house.is_some()
     }
 
-    /// The room in which a viewpoint stands, as a person would call it.
+    /// The room of a viewpoint, as a person would call it.
     pub(crate) fn room(&self, viewpoint: &ViewpointId) -> Option<&'static str> {
         let listed = self.rooms.as_ref().and_then(|rooms| rooms.get(viewpoint)).copied();
         let letter = listed.or_else(|| self.house.as_ref()?.room_letter(viewpoint))?;

@@ -1,4 +1,7 @@
-//! A panorama as the simulator's 36 views: `VIEWPOINT/0.jpg` to `35.jpg`.
+//! Makes views from a panorama in the form of the simulator's 36 pictures: `VIEWPOINT/0.jpg` to `35.jpg`.
+//!
+//! The pictures look in 12 directions at 3 elevations each. A pixel of a view is taken from the picture that looks most
+//! nearly in the pixel's direction.
 
 use super::{boxes::VIEWS, read};
 use rayon::prelude::*;
@@ -55,8 +58,8 @@ impl ThirtySix {
         Ok(Self { views })
     }
 
-    /// The view along a gaze. Each pixel comes from the view whose axis is nearest, with bilinear interpolation. RGB,
-    /// from the top left.
+    /// The view along a gaze: RGB, from the top left. Each pixel comes from the picture with the nearest axis, with bilinear
+    /// interpolation.
     pub(crate) fn sample(&self, gaze: Gaze, width: u32, height: u32) -> Vec<u8> {
         let pixel = 2.0 * libm::tan(gaze.horizontal_fov_rad / 2.0) / f64::from(width);
         let columns: Vec<(usize, f64, f64)> = (0..width)
@@ -72,6 +75,7 @@ impl ThirtySix {
         rgb
     }
 
+    /// The colour along a ray, given as in [`Self::meet`], from the row with the nearest axis.
     fn colour(&self, column: usize, right: f64, ahead: f64, up: f64) -> [u8; 3] {
         let mut best = (0, self.meet(0, right, ahead, up));
         for row in 1..ROWS {
@@ -97,8 +101,8 @@ impl ThirtySix {
 const TILTS: [(f64, f64); ROWS] = [(-0.5, COS_30), (0.0, 1.0), (0.5, COS_30)];
 const COS_30: f64 = 0.866_025_403_784_438_6;
 
-/// The column whose axis is nearest to the direction `off` (a tangent, positive to the right) from a heading, and the
-/// components of the ray (off, 1) to the right of that axis and along it.
+/// The column with the axis nearest to a direction. The direction lies at the tangent `off` to the right of a heading. The
+/// other two numbers are the components of the ray (off, 1) to the right of that axis and along it.
 fn column(heading_rad: f64, off: f64) -> (usize, f64, f64) {
     let steps = libm::round((heading_rad + libm::atan(off)) / FRAC_PI_6);
     let turn = heading_rad - steps * FRAC_PI_6;
@@ -139,7 +143,7 @@ mod tests {
         2.0 * (FRAC_PI_6.tan() * 4.0 / 3.0).atan()
     }
 
-    /// A world whose colour is a smooth function of the direction.
+    /// A world with colours that are a smooth function of the direction.
     fn world_colour(heading: f64, elevation: f64) -> [u8; 3] {
         let wave = |angle: f64| (127.5 + 110.0 * angle.sin()) as u8;
         [wave(heading), wave(heading + FRAC_PI_3), wave(2.0 * elevation)]

@@ -1,4 +1,4 @@
-//! Parses the answers of a child.
+//! Parses the lines that a child answers with.
 
 use super::fault::Fault;
 use serde::Deserialize;
@@ -28,6 +28,7 @@ pub(crate) struct Refusal {
     pub(crate) message: String,
 }
 
+/// An answer as it is written in JSON, before it is checked.
 #[derive(Deserialize)]
 struct Wire {
     id: u64,
@@ -101,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_error_repeats_is_short_and_harmless() {
+    fn errors_repeat_a_line_shortened_and_without_control_characters() {
         let error = answer("\u{1b}[2J\u{7}".repeat(1000).as_bytes()).unwrap_err().to_string();
         assert!(error.len() < 300 && !error.contains(char::is_control), "{error}");
     }
@@ -126,7 +127,7 @@ mod tests {
         }
 
         #[test]
-        fn what_was_written_is_read_again(id in any::<u64>(), text in ".*") {
+        fn an_answer_survives_writing_and_parsing(id in any::<u64>(), text in ".*") {
             let line = serde_json::to_vec(&json!({"id": id, "result": {"name": text}})).unwrap();
             let mut pipe = line.clone();
             pipe.push(b'\n');

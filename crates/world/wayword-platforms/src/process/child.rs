@@ -1,4 +1,5 @@
-//! A running child: its pipes, and one request at a time. A world within this process is asked in the same way, by a thread.
+//! Talks with a running child over its pipes, one request at a time. A thread takes the child's place for a world within
+//! this process.
 
 use super::{
     answer::{Answer, MAX_LINE_BYTES, answer},
@@ -20,8 +21,8 @@ use wayword_world::said::{Hear, Line, plain, read_line};
 
 /// How long to wait for a child's end after its output has closed, and then for the rest of its error output.
 const AFTERMATH: Duration = Duration::from_millis(500);
-/// How often to check whether a child that does not answer still runs. Its output need not close when it ends, because
-/// processes that it started may keep the output open.
+/// How often to check whether a child that has not answered yet still runs. The end of its output is no sure sign,
+/// because processes that it started may keep the output open.
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 
 /// A child process. When it is dropped, its input is closed, which asks it to end; it is killed if it does not end. The
@@ -132,7 +133,7 @@ impl Running {
         }
     }
 
-    /// The fault that the end of its output means.
+    /// The fault for a child that has closed its output: it died, or it still runs but can no longer answer.
     fn end(&self) -> Fault {
         let Some(group) = &self.group else { return Fault::Closed };
         if !group.ends_within(AFTERMATH) {
@@ -141,6 +142,7 @@ impl Running {
         Fault::Died(group.end().map_or_else(|| "exit status unknown".to_owned(), |status| status.to_string()))
     }
 
+    /// The fault for a line without an end. If it is no answer, the error shows its beginning.
     fn half(&self, line: &[u8]) -> Fault {
         let end = self.end();
         match answer(line) {

@@ -1,4 +1,4 @@
-//! What can be wrong with a child, and the messages for it.
+//! Everything that can go wrong with a child, with the message and the advice for each.
 
 use super::protocol::{FRAME, PROTOCOL};
 use std::io;

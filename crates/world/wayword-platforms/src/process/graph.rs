@@ -1,4 +1,6 @@
-//! The viewpoint graph of a child's scene: the child's own, or one made here from its places and the ways between them.
+//! Gets the viewpoint graph of a child's scene. A child may send its own graph. Otherwise the graph is made here, from
+//! places that the child proposes: it is asked for the neighbours of each place, or whether one can walk straight between
+//! two of them.
 
 use super::{keeper::Keeper, labels::place, protocol::Offer};
 use serde::Deserialize;
@@ -12,14 +14,14 @@ const MAX_EDGES: usize = 200_000;
 const POINTS_ASKED: usize = 1000;
 /// Most places from which a graph is made here.
 const MAX_POINTS: usize = 5000;
-/// Longest way that is tried, in spacings.
+/// Longest walk that the child is asked about, in multiples of the spacing.
 const REACH: f64 = 3.0;
-/// Number of nearest places to which a way is tried from each place.
+/// Number of nearest places that a walk is tried to from each place.
 const TRIED: usize = 8;
-/// Most ways in one request.
+/// Most walks in one request.
 const BATCH: usize = 128;
 
-/// A place where one can stand.
+/// A place in the child's words, where a walker can stand. `level` is its storey, 1 for the lowest.
 #[derive(Debug, Clone, Deserialize)]
 struct Waypoint {
     #[serde(default)]
@@ -29,22 +31,26 @@ struct Waypoint {
     level: Option<u32>,
 }
 
+/// The answer to `graph`.
 #[derive(Deserialize)]
 struct Whole {
     viewpoints: Vec<Waypoint>,
     edges: Vec<(ViewpointId, ViewpointId)>,
 }
 
+/// The answer to `points`.
 #[derive(Deserialize)]
 struct Points {
     points: Vec<Waypoint>,
 }
 
+/// The answer to `neighbours`.
 #[derive(Deserialize)]
 struct Neighbours {
     viewpoints: Vec<ViewpointId>,
 }
 
+/// The answer to `walkable`: one value for each pair that was asked about.
 #[derive(Deserialize)]
 struct Walkable {
     walkable: Vec<bool>,
@@ -117,7 +123,7 @@ fn nodes(places: &[Waypoint]) -> Result<ViewpointGraph, String> {
     Ok(graph)
 }
 
-/// Thins the places out, asks between which near ones one can walk straight, and keeps the largest connected part.
+/// Thins the places out, asks for each near pair whether one can walk straight, and keeps the largest connected part.
 fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result<ViewpointGraph, PlatformError> {
     let spacing_m = keeper.options().spacing_m;
     let points = thinned(points, spacing_m).map_err(|reason| keeper.misfit("points", reason))?;
@@ -135,7 +141,7 @@ fn by_walking(keeper: &Keeper, scene: &SceneId, points: Vec<Waypoint>) -> Result
     joined(&points, &open).map_err(|source| PlatformError::Graph { scene: scene.clone(), source })
 }
 
-/// Places at least `spacing_m` apart, each with a name; of places nearer together, the first is kept.
+/// Drops places that are less than `spacing_m` from an earlier one, and gives the rest names if they have none.
 fn thinned(points: Vec<Waypoint>, spacing_m: f64) -> Result<Vec<Waypoint>, String> {
     let mut kept: Vec<Waypoint> = Vec::new();
     for point in points {
@@ -216,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_part_is_kept_and_walls_are_not_walked_through() {
+    fn a_graph_of_walks_is_the_largest_part_and_avoids_walls() {
         let points: Vec<Waypoint> = (0..8).map(|n| at(f64::from(n), 0.0)).collect();
         let points = thinned(points, 1.0).unwrap();
         // A wall between 4 and 5.

@@ -1,4 +1,4 @@
-//! A child and the processes that it starts: one process group, which ends as a whole.
+//! Runs a child, and all processes that it starts, as one process group that is ended as a whole.
 //!
 //! The system may give a group's number to another group as soon as no process is in it. So the group is killed first
 //! and its leader is reaped afterwards, because a leader that has ended but was not reaped keeps the number.
@@ -21,6 +21,7 @@ const REAPED_WITHIN: Duration = Duration::from_secs(1);
 /// Every running group, for [`end_all`].
 static LIVING: Mutex<Living> = Mutex::new(Living { is_closed: false, groups: Vec::new() });
 
+/// The running groups.
 struct Living {
     /// Whether no more groups may start.
     is_closed: bool,
@@ -63,6 +64,7 @@ pub(crate) type Pipes = (Option<ChildStdin>, Option<ChildStdout>, Option<ChildSt
 /// A started child and its group. When it is dropped, the group is killed.
 pub(crate) struct Group(Arc<Mutex<Members>>);
 
+/// The processes of a group that this program started itself.
 struct Members {
     child: Child,
     /// The leader of the group, if there is a guard; otherwise the child is the leader.

@@ -15,12 +15,12 @@ use std::{
     time::Duration,
 };
 
-/// How long a child whose input was closed may take to end by itself.
+/// Time for a child to end by itself after its input was closed.
 pub(crate) const FAREWELL: Duration = Duration::from_millis(500);
 /// The only argument of a guard.
 const ROLE: &str = "guard-children";
 
-/// How this program is started again, where it is no executable of its own.
+/// The command that starts this program again, if it is no executable of its own.
 static THIS_PROGRAM: OnceLock<Guardian> = OnceLock::new();
 
 /// A program that can be a guard: started with `guard-children` as its last argument, it calls [`stand_guard_if_asked`].
@@ -28,12 +28,12 @@ static THIS_PROGRAM: OnceLock<Guardian> = OnceLock::new();
 pub struct Guardian {
     /// The executable.
     pub program: PathBuf,
-    /// What comes before the role.
+    /// The arguments before the role.
     pub arguments: Vec<OsString>,
 }
 
 impl From<PathBuf> for Guardian {
-    /// An executable that needs no argument but the role.
+    /// An executable that needs only one argument, the role.
     fn from(program: PathBuf) -> Self {
         Self { program, arguments: Vec::new() }
     }
@@ -58,7 +58,7 @@ impl Guard {
         Err(io::ErrorKind::Unsupported.into())
     }
 
-    /// Its process id, which is also the id of its group.
+    /// Its process id, the same as the id of its group.
     #[cfg(unix)]
     pub(crate) fn id(&self) -> u32 {
         self.0.id()
@@ -90,10 +90,10 @@ pub fn this_program() -> Option<Guardian> {
     }
 }
 
-/// Says how this program is started again, where its executable is another program: an interpreter that it is a module of.
-/// Only the first call counts.
+/// Sets the command that starts this program again, for a program that runs as a module of an interpreter, so that its
+/// executable is the interpreter. Only the first call counts.
 pub fn this_program_is(guardian: Guardian) {
-    // A second call says the same, because a process has one interpreter.
+    // A second call would set the same command, because a process has one interpreter.
     let _ = THIS_PROGRAM.set(guardian);
 }
 
@@ -109,9 +109,10 @@ pub fn stand_guard_if_asked(arguments: &[OsString]) {
     let _ = is_asked;
 }
 
+/// Waits for the end of the guarded program, and kills the group.
 #[cfg(unix)]
 fn stand() -> ! {
-    // Nothing is written into the pipe: this waits for its end.
+    // The pipe stays empty: this waits for its end.
     let _ = io::copy(&mut io::stdin().lock(), &mut io::sink());
     std::thread::sleep(FAREWELL);
     let _ = rustix::process::kill_current_process_group(rustix::process::Signal::KILL);

@@ -1,6 +1,6 @@
 //! Keeps a child running: sends it requests, and restarts it after a fault, a bounded number of times.
 //!
-//! A request that meets a fault is not sent again, because it may be what kills the child. So its caller gets the
+//! A request that meets a fault is not sent again, because the request itself may kill the child. Its caller gets the
 //! error, and the next request goes to a new child.
 
 use super::{
@@ -22,7 +22,7 @@ use wayword_world::said::{Hear, plain};
 /// After this many answers the child may be restarted once more.
 const ANSWERS_FOR_A_RESTART: u32 = 200;
 
-/// A child that is kept running, and used by one thread at a time.
+/// Keeps one child running. Only one thread uses the child at a time.
 pub(crate) struct Keeper {
     options: ProcessOptions,
     hear: Hear,
@@ -30,7 +30,7 @@ pub(crate) struct Keeper {
     state: Mutex<ChildState>,
 }
 
-/// The running child, and what is kept about earlier ones.
+/// The running child, and the history of earlier ones.
 struct ChildState {
     running: Option<Running>,
     /// The folder of its pictures, with links resolved.
@@ -66,15 +66,15 @@ impl Keeper {
         &self.world
     }
 
-    /// Sends a request whose result can be read from the answer alone.
+    /// Sends a request, and reads its result from the answer alone, without the child's files.
     pub(crate) fn ask<T: DeserializeOwned>(&self, method: &'static str, params: &Value) -> Result<T, PlatformError> {
         self.ask_and_take(method, params, |result, _| {
             serde_path_to_error::deserialize(result).map_err(|error| error.to_string())
         })
     }
 
-    /// Sends a request, and lets `take` read what it needs before the next request is sent, because the child may then
-    /// overwrite its picture file. `take` also gets the folder of the child's pictures.
+    /// Sends a request, and lets `take` read the result before the next request is sent, because the child may then overwrite
+    /// its picture file. `take` also gets the folder of the child's pictures.
     pub(crate) fn ask_and_take<T>(
         &self,
         method: &'static str,
@@ -127,6 +127,7 @@ impl Keeper {
 }
 
 impl ChildState {
+    /// Starts a child and reads its greeting.
     fn launch(&mut self, options: &ProcessOptions, hear: &Hear) -> Result<World, Failed> {
         let started = Running::start(options, hear).map_err(|fault| {
             self.last_fault = fault.to_string();
@@ -139,6 +140,7 @@ impl ChildState {
         world.inspect_err(|_| self.running = None)
     }
 
+    /// Checks a greeting, and notes the folder of the child's pictures.
     fn greeted(&mut self, greeting: Value) -> Result<World, Fault> {
         // The version is checked first, because another version may have another greeting.
         if let Some(version) = greeting.get("protocol").and_then(Value::as_u64)
@@ -219,14 +221,14 @@ impl Failed {
         PlatformError::Lost { world: file.display().to_string(), reason, hint: self.fault.hint() }
     }
 
-    /// The error for a child that does something wrong.
+    /// The error for a child that the user has to correct, as a fault of its file.
     fn into_wrong(self, options: &ProcessOptions) -> PlatformError {
         let (file, reason) = self.place_and_reason(options);
         PlatformError::File { file, reason, hint: self.fault.hint() }
     }
 
-    /// The file that the error names, and what is wrong. If the program cannot be started, the place to correct is the
-    /// world file, if there is one.
+    /// The file that the error names, and the reason. If the program cannot be started, this is the world file if there is
+    /// one, because the user has to correct the command there.
     fn place_and_reason(&self, options: &ProcessOptions) -> (PathBuf, String) {
         let Self { fault, method, id, last_words } = self;
         match (fault, &options.world_file) {

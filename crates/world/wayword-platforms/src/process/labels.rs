@@ -1,4 +1,4 @@
-//! Converts what a child says about a view into Wayword's labels.
+//! Converts the objects that a child reports in a view into labels, and checks every number of them.
 
 use super::{picture::Sent, protocol};
 use serde::Deserialize;
@@ -42,7 +42,7 @@ pub(crate) struct Seen {
     colour: Option<String>,
 }
 
-/// The labels of a view: those of objects whose centre lies within its width.
+/// The labels of a view: those of objects that have their centre within its width.
 pub(crate) fn of_view(seen: Vec<Seen>, eye: DVec3, gaze: Gaze, size_px: (u32, u32)) -> Result<Vec<Label>, String> {
     if seen.len() > MAX_LABELS {
         return Err(format!("{} labels, expected at most {MAX_LABELS}", seen.len()));
@@ -143,14 +143,14 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_outside_the_gaze_belongs_to_another_view() {
+    fn of_view_leaves_out_objects_outside_the_gaze() {
         let behind = json!([{"object": "1", "name": "door", "position": [1.0, -3.0, 1.0]}, {"object": "2", "name": "rug", "heading_rad": -0.5}]);
         let found = labels(behind).unwrap();
         assert_eq!(found.iter().map(|label| label.name.as_str()).collect::<Vec<_>>(), ["rug"]);
     }
 
     #[test]
-    fn a_label_that_cannot_be_is_refused_by_name() {
+    fn of_view_names_the_object_of_an_impossible_label() {
         for (bad, says) in [
             (json!({"object": "7", "name": "lamp"}), "position"),
             (json!({"object": "7", "name": "a\nb", "heading_rad": 0}), "name"),
@@ -167,7 +167,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn whatever_is_accepted_lies_in_the_view(
+        fn of_view_accepts_only_labels_within_the_view(
             position in prop::array::uniform3(-20.0..20.0f64), corners in prop::array::uniform4(-50.0..700.0f64),
         ) {
             let seen = json!([{"object": "7", "name": "lamp", "position": position, "box_px": corners}]);

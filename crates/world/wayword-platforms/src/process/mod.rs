@@ -1,13 +1,13 @@
-//! Any simulator, in any language, as a child process.
+//! A platform for any simulator, in any language, that runs as a child process: a world program.
 //!
 //! Wayword writes one request per line to the child's standard input and reads one answer per line from its standard
 //! output. `docs/PROCESS.md` describes requests and answers, and `python/wayword/platform.py` implements the child's
-//! side in Python. A world within this process ([`Inside`]) is asked with the same lines. The child converts to Wayword's
-//! frame (z up, metres, radians clockwise from +y) and names that frame in its greeting.
+//! side in Python. A world within this process ([`Inside`]) gets the same lines. The child converts to Wayword's frame
+//! (z up, metres, radians clockwise from +y) and names that frame in its greeting.
 //!
 //! The child is not trusted: lines, pictures, counts and times are bounded. If it dies, hangs, floods its output or
 //! sends something that is not an answer, the request under way fails and the child is restarted, a bounded number of
-//! times (`keeper.rs`).
+//! times (`child_keeper.rs`).
 //!
 //! A child ends together with the processes that it started (`group.rs`): when its platform is dropped, after a fault,
 //! and by [`end_all`]. If this program is killed, or exits without dropping the platform, only a guard can end the

@@ -1,4 +1,5 @@
-//! Which program to start, and how long to wait for it.
+//! The settings of a world program: its command, the size of its pictures and the time limits. They come from a world
+//! file or from the caller.
 
 use super::{answer::MAX_LINE_BYTES, guard::Guardian};
 use crate::matterport::read;
@@ -42,10 +43,10 @@ pub struct ProcessOptions {
     pub answer_within: Duration,
     /// How often the child may be restarted. Each 200 answers allow one more restart, but never more than this number.
     pub restarts: u32,
-    /// A world within this process, which is asked in place of a program. `program` is then the name that errors give it.
+    /// A world within this process, which answers in place of a program. `program` is then the name that errors give it.
     pub inside: Option<Inside>,
     /// A program that calls [`stand_guard_if_asked`](super::stand_guard_if_asked) at its very start:
-    /// [`this_program`](super::this_program), if it does so. It is started beside the child. If this program is killed,
+    /// [`this_program`](super::this_program), if it does so. It runs next to the child. If this program is killed,
     /// or exits without dropping the platform, the guard ends the child and the processes that the child started.
     ///
     /// Without a guard, and on systems other than Unix, only the end of its input asks the child to end in this case,
@@ -62,8 +63,8 @@ pub struct Inside(Arc<Mutex<Box<Answers>>>);
 type Answers = dyn FnMut(&[u8]) -> Vec<u8> + Send;
 
 impl Inside {
-    /// A world that answers a request with a line, as `docs/PROCESS.md` says, both without the end of the line.
-    /// It is asked one request at a time, also after a request that took too long.
+    /// A world that answers each request with a line, as `docs/PROCESS.md` describes, both without the end of the line.
+    /// It gets one request at a time, also after a request that took too long.
     pub fn new(answers: impl FnMut(&[u8]) -> Vec<u8> + Send + 'static) -> Self {
         Self(Arc::new(Mutex::new(Box::new(answers))))
     }
@@ -114,11 +115,11 @@ impl ProcessOptions {
         Self { inside: Some(world), ..Self::new(name) }
     }
 
-    /// The same with pictures of another size, and another distance between viewpoints that Wayword makes. What is not given
-    /// stays.
+    /// The same options with pictures of another size, and another distance between viewpoints that Wayword makes. A value of
+    /// `None` changes nothing.
     ///
     /// # Errors
-    /// Which of them is beyond what is allowed.
+    /// Names the first value that is out of range.
     pub fn sized(self, width_px: Option<u32>, height_px: Option<u32>, spacing_m: Option<f64>) -> Result<Self, String> {
         Ok(Self {
             width_px: side(width_px, self.width_px, "width_px")?,
@@ -148,7 +149,7 @@ impl ProcessOptions {
         }
     }
 
-    /// The command as errors name it: the script if there is one, because its name says more than the interpreter's.
+    /// The command as errors name it: the script if there is one, because the interpreter's name would not help.
     pub(crate) fn shown(&self) -> PathBuf {
         let script = self.arguments.first().filter(|first| Path::new(first).extension().is_some());
         script.map_or_else(|| self.program.clone(), |script| PathBuf::from(plain(script, 200)))
@@ -200,6 +201,7 @@ fn wait(given_s: Option<f64>, default: Duration, name: &str) -> Result<Duration,
     within(given_s, default.as_secs_f64(), 0.01..=MAX_WAIT_S, name).map(Duration::from_secs_f64)
 }
 
+/// A setting if it is within a range, or the default; the error names the setting and the range.
 fn within<T: PartialOrd + std::fmt::Display>(
     given: Option<T>,
     default: T,
@@ -227,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_world_file_names_a_command_and_runs_it_beside_itself() {
+    fn a_world_file_runs_its_command_in_its_own_folder() {
         let options =
             read(r#"{"command": ["python3", "world.py", "--scene", "a b"], "answer_within_s": 0.5}"#).unwrap();
         assert_eq!(options.program, Path::new("python3"));
@@ -244,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_world_file_is_refused_with_a_hint() {
+    fn read_world_file_refuses_a_wrong_file_with_a_hint() {
         for bad in [
             "",
             "[]",

@@ -1,4 +1,4 @@
-//! Random paths that the child chooses itself.
+//! Asks a child for a random path, if it offers to choose paths itself, and checks the path.
 
 use super::{keeper::Keeper, labels::place};
 use serde::Deserialize;
@@ -14,11 +14,13 @@ const MAX_STOPS: usize = 1000;
 /// Tolerance of a path's length, for rounding, metres.
 const SLACK_M: f64 = 1e-3;
 
+/// The answer to `sample_path`; `path` is missing if the child found none.
 #[derive(Deserialize)]
 struct Drawn {
     path: Option<Walk>,
 }
 
+/// A path in the child's words.
 #[derive(Deserialize)]
 struct Walk {
     stops: Vec<Given>,

@@ -1,4 +1,5 @@
-//! The child's pictures: in base64 within its answer, or in a file in the folder that its greeting names.
+//! Reads the pictures of a child: in base64 within its answer, or in a file in the folder that its greeting names. The
+//! child is not trusted, so no path leads out of that folder, and sizes are checked before a picture is decoded.
 
 use base64::{Engine, engine::general_purpose::STANDARD};
 use image::{ImageFormat, ImageReader, Limits};

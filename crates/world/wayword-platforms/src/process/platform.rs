@@ -1,4 +1,4 @@
-//! A child process as a [`Platform`].
+//! Offers a child process as a [`Platform`].
 
 use super::{
     graph,
@@ -25,7 +25,7 @@ use wayword_world::{episode_path::labels_around, graph_walk, said::Hear};
 /// Most scenes that a child may list.
 const MAX_SCENES: usize = 10_000;
 
-/// A platform whose scenes another program provides.
+/// A platform with scenes that another program provides.
 ///
 /// The child is asked for a scene's graph only once. Requests go to the child one after another. If a request meets a
 /// fault, its caller gets an error, and the child is restarted for the next request.
@@ -34,29 +34,32 @@ pub struct ProcessPlatform {
     known: Mutex<BTreeMap<SceneId, Arc<Known>>>,
 }
 
-/// What the child has said about a scene.
+/// The answers of the child about a scene that are asked for only once.
 struct Known {
     graph: Arc<ViewpointGraph>,
     objects: OnceLock<BTreeMap<ObjectId, Everywhere>>,
 }
 
-/// What all viewpoints show of one object.
+/// One object, collected from the labels at all viewpoints of a scene.
 #[derive(Default)]
 struct Everywhere {
     name: String,
     visible_from: BTreeSet<ViewpointId>,
 }
 
+/// The answer to `scenes`.
 #[derive(Deserialize)]
 struct Scenes {
     scenes: Vec<SceneId>,
 }
 
+/// The answer to `object_name`.
 #[derive(Deserialize)]
 struct Name {
     name: Option<String>,
 }
 
+/// The answer to `visible_from`.
 #[derive(Deserialize)]
 struct Viewpoints {
     viewpoints: Option<BTreeSet<ViewpointId>>,

@@ -1,4 +1,4 @@
-//! The protocol's greeting, and what a world program can offer. `docs/PROCESS.md` describes the protocol.
+//! The greeting of a world program, and the list of abilities that it can offer. `docs/PROCESS.md` describes the protocol.
 
 use serde::Deserialize;
 use std::{collections::BTreeSet, fmt, path::PathBuf};
@@ -6,7 +6,7 @@ use wayword_world::said::plain;
 
 /// Version of the protocol.
 pub const PROTOCOL: u64 = 1;
-/// The frame and the units of all numbers; the child has to repeat this text: z up, metres, radians clockwise from +y.
+/// The frame and the units of all numbers. The child has to repeat this text, which shows that its author has read it.
 pub(crate) const FRAME: &str = "z-up, metres, radians clockwise from +y";
 /// Longest name of a world program, an object, a room or a colour, characters.
 pub(crate) const MAX_NAME_CHARS: usize = 200;
@@ -28,7 +28,7 @@ pub enum Offer {
     Pictures,
     /// The visible objects; always all of them.
     Labels,
-    /// The room in which one stands.
+    /// The room of a place.
     Rooms,
     /// The name of an object by its id.
     ObjectName,
@@ -72,7 +72,7 @@ pub struct World {
 }
 
 impl World {
-    /// Whether it provides something.
+    /// Whether it provides this.
     #[must_use]
     pub fn has(&self, offer: Offer) -> bool {
         self.offers.contains(&offer)

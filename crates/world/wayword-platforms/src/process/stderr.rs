@@ -1,4 +1,4 @@
-//! A child's standard error: each line is passed on at once, and the last lines are kept for error messages.
+//! Reads a child's standard error. Each line is passed on at once, and the last lines are stored for error messages.
 
 use std::{
     collections::VecDeque,
@@ -7,11 +7,11 @@ use std::{
 };
 use wayword_world::said::{Hear, plain};
 
-/// Number of last lines that are kept for error messages.
+/// Number of last lines that are stored for error messages.
 const KEPT_LINES: usize = 12;
-/// Most characters of a line that are passed on and kept.
+/// Most characters of a line that are passed on and stored.
 const MAX_LINE_CHARS: usize = 400;
-/// Most lines of one child that are passed on. Later lines are not passed on, but the last ones are still kept.
+/// Most lines of one child that are passed on. Later lines are not passed on, but the last ones are still stored.
 const MAX_HEARD_LINES: usize = 2000;
 
 /// The last lines of a child's standard error.
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_lines_are_kept_and_the_first_ones_passed_on() {
+    fn stderr_passes_on_the_first_lines_and_stores_the_last() {
         let (words, heard) = (LastWords::default(), Arc::new(Mutex::new(Vec::new())));
         let hear: Hear = {
             let heard = Arc::clone(&heard);

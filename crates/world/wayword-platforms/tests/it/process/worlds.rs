@@ -30,7 +30,7 @@ fn a_world_is_listed_walked_and_seen() {
 }
 
 #[test]
-fn an_object_is_named_and_found_by_the_labels_where_the_world_does_not_say() {
+fn objects_are_named_and_found_by_labels_if_the_world_offers_neither() {
     let platform = started("behaves").unwrap();
     let (good, lamp) = (scene("good"), ObjectId::new("7").unwrap());
     let graph = platform.graph(&good).unwrap();
@@ -53,7 +53,7 @@ fn pictures_may_be_files_of_the_folder_that_the_greeting_names() {
 }
 
 #[test]
-fn a_world_may_draw_its_own_paths_and_is_held_to_the_request() {
+fn a_world_may_draw_its_own_paths_if_they_fit_the_request() {
     let (good, seed) = (scene("good"), 5);
     let drawn = |role: &str, request: &PathRequest| {
         started(role).unwrap().sample_path(&good, request, seed).map_err(|error| error.to_string())

@@ -41,8 +41,8 @@ fn no_child_outlives_its_platform_and_none_stays_as_a_zombie() {
     assert!(!is_listed(child), "a child that died was not reaped");
 }
 
-/// A platform whose script starts two servers first, as `xvfb-run` does, and the servers' process ids. One server keeps
-/// the script's pipes open, the other does not.
+/// A platform with a script that starts two servers first, as `xvfb-run` does, and the servers' process ids. One server
+/// keeps the script's pipes open, the other does not.
 fn with_servers(role: &str) -> (ProcessPlatform, [u32; 2]) {
     let folder = tempfile::tempdir().unwrap();
     let note = folder.path().join("pids");
@@ -58,7 +58,7 @@ fn with_servers(role: &str) -> (ProcessPlatform, [u32; 2]) {
 }
 
 #[test]
-fn what_a_child_has_started_ends_with_it() {
+fn processes_of_a_child_end_with_it() {
     for role in ["behaves", "stays"] {
         let (platform, servers) = with_servers(role);
         drop(platform);
@@ -68,7 +68,7 @@ fn what_a_child_has_started_ends_with_it() {
 }
 
 #[test]
-fn what_a_child_has_started_ends_where_a_panic_drops_its_platform() {
+fn processes_of_a_child_end_if_a_panic_drops_its_platform() {
     let (platform, servers) = with_servers("behaves");
     let thread = std::thread::spawn(move || {
         let _platform = platform;
@@ -79,7 +79,7 @@ fn what_a_child_has_started_ends_where_a_panic_drops_its_platform() {
 }
 
 #[test]
-fn a_child_that_dies_is_told_of_while_what_it_has_started_keeps_its_output_open() {
+fn death_of_a_child_is_noticed_although_its_output_stays_open() {
     let (platform, servers) = with_servers("dies");
     let asked = Instant::now();
     let error = look(&platform, "bad").unwrap_err().to_string();
@@ -89,7 +89,7 @@ fn a_child_that_dies_is_told_of_while_what_it_has_started_keeps_its_output_open(
 }
 
 #[test]
-fn a_guard_that_cannot_be_started_is_told_of_and_missed_by_nobody() {
+fn a_guard_that_cannot_be_started_is_reported_and_does_no_harm() {
     let heard = Arc::new(Mutex::new(Vec::new()));
     let hear = Arc::clone(&heard);
     let options = ProcessOptions {
@@ -105,7 +105,7 @@ fn a_guard_that_cannot_be_started_is_told_of_and_missed_by_nobody() {
 }
 
 #[test]
-fn a_child_that_left_after_its_answer_is_started_again_and_nobody_loses_anything() {
+fn a_child_that_ended_after_its_answer_is_restarted_without_a_lost_request() {
     let platform = started("leaves").unwrap();
     let first = pid(&look(&platform, "bad").unwrap());
     // The child ends right after its answer. A request while it is ending may fail, so this waits.

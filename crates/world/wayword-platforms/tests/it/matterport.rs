@@ -53,9 +53,9 @@ fn without_a_house_file_levels_come_from_the_floors() {
 }
 
 #[test]
-fn a_look_tells_what_is_there_and_in_which_room() {
+fn a_look_gives_labels_and_the_room() {
     let (_folder, platform) = building();
-    // Viewpoint 3 is in the living room, whose north wall has a television.
+    // Viewpoint 3 is in the living room, which has a television on its north wall.
     let view = platform.look(&scene(), &frame(&platform, 3), Gaze::quarter(Heading::NORTH)).unwrap();
     assert!(view.image.is_none());
     let truth = view.ground_truth().unwrap();
@@ -99,7 +99,7 @@ fn every_label_is_in_exactly_one_view_of_a_panorama() {
 }
 
 #[test]
-fn without_boxes_the_house_file_tells_what_is_near() {
+fn without_boxes_labels_come_from_the_house_file() {
     let (folder, with_boxes) = building();
     std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
     let platform = Matterport::open(folder.path()).unwrap();
@@ -112,7 +112,7 @@ fn without_boxes_the_house_file_tells_what_is_near() {
 }
 
 #[test]
-fn where_nothing_is_known_there_is_no_ground_truth() {
+fn a_look_without_data_has_no_ground_truth() {
     let (folder, _) = building();
     std::fs::remove_dir_all(folder.path().join("reverie")).unwrap();
     std::fs::remove_dir_all(folder.path().join("matterport/v1")).unwrap();
@@ -124,7 +124,7 @@ fn where_nothing_is_known_there_is_no_ground_truth() {
 }
 
 #[test]
-fn an_episode_names_its_target_and_says_whether_it_has_a_namesake() {
+fn an_episode_names_its_target_and_notes_namesakes() {
     let (_folder, platform) = building();
     let bedroom: Vec<_> = [0, 1, 6, 7, 8, 9, 10].map(viewpoint).into();
     let pillow = ObjectId::new("27").unwrap();
@@ -142,7 +142,7 @@ fn an_episode_names_its_target_and_says_whether_it_has_a_namesake() {
 /// With the boxes, and without them with the `.house` file: an object is visible from the viewpoints where its label is
 /// in a view.
 #[test]
-fn an_object_is_visible_from_where_it_is_seen() {
+fn visible_from_lists_viewpoints_with_a_box_of_the_object() {
     let (folder, platform) = building();
     let agree = |platform: &Matterport| {
         let desk = ObjectId::new("38").unwrap();
@@ -164,7 +164,7 @@ fn an_object_is_visible_from_where_it_is_seen() {
 }
 
 #[test]
-fn errors_name_what_is_not_there() {
+fn errors_name_missing_scenes_and_viewpoints() {
     let (_folder, platform) = building();
     let elsewhere = SceneId::new("elsewhere").unwrap();
     assert!(matches!(platform.graph(&elsewhere), Err(PlatformError::UnknownScene { .. })));
@@ -196,7 +196,7 @@ fn random_paths_keep_to_the_request_and_the_seed() {
 }
 
 #[test]
-fn a_skybox_is_seen_the_right_way_round() {
+fn a_skybox_is_shown_the_right_way_round() {
     let (folder, _) = building();
     write_skyboxes(folder.path()).unwrap();
     let platform = Matterport::open(folder.path()).unwrap();
@@ -238,7 +238,7 @@ fn a_folder_of_36_views_serves_where_there_is_no_skybox() {
 }
 
 #[test]
-fn the_made_up_episodes_can_be_walked_to_a_visible_target() {
+fn fixture_episodes_can_be_walked_to_a_visible_target() {
     let (folder, platform) = building();
     let bytes = std::fs::read(folder.path().join("reverie/REVERIE_val_seen.json")).unwrap();
     let items: Vec<serde_json::Value> = serde_json::from_slice(&bytes).unwrap();

@@ -105,7 +105,7 @@ fn many_answers_earn_a_restart_back() {
 }
 
 #[test]
-fn an_answer_too_many_spoils_the_next_request_and_no_more() {
+fn an_extra_answer_fails_only_the_next_request() {
     let platform = started("twice").unwrap();
     look(&platform, "bad").unwrap();
     let error = look(&platform, "good").unwrap_err().to_string();
@@ -162,7 +162,7 @@ fn broken_answers_are_errors_or_views_and_never_the_end() {
         refused += usize::from(look(&platform, "bad").is_err());
     }
     assert!(refused > 50, "hardly anything was broken: {refused}");
-    // What is left in the pipe of the last child may make one more request fail.
+    // The rest of the last child's output, still in the pipe, may make one more request fail.
     assert!((0..2).any(|_| look(&platform, "good").is_ok()));
     assert_eq!(platform.scenes().unwrap().len(), 2);
 }

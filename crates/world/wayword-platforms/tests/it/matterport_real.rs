@@ -1,5 +1,5 @@
-//! Tests with the real buildings, if they are available: `WAYWORD_DATA` names their folder; without it,
-//! `../shared/data` beside the repository is tried.
+//! Tests with the real buildings, if they are available: `WAYWORD_DATA` names their folder. Without it, the folder
+//! `../shared/data` next to the repository is tried.
 
 #![allow(
     clippy::unwrap_used,

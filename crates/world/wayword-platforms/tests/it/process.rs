@@ -1,21 +1,16 @@
 //! Tests of world programs: what they provide if they behave, and what happens if they do not.
 //!
-//! The child is this test binary itself: `the_child` plays it if the environment says so. A shell passes its standard
-//! output on as descriptor 3, because the test harness writes to descriptor 1.
+//! The child is this test binary itself: if the environment names a role, `the_child` plays it. A shell passes its
+//! standard output on as descriptor 3, because the test harness writes to descriptor 1.
 
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking, and its child speaks")]
 
-#[path = "process/actor.rs"]
 mod actor;
-#[path = "process/faults.rs"]
 mod faults;
-#[path = "process/graphs.rs"]
 mod graphs;
 #[cfg(target_os = "linux")]
-#[path = "process/lives.rs"]
 mod lives;
-#[path = "process/worlds.rs"]
 mod worlds;
 
 use std::{path::Path, sync::Arc, time::Duration};
@@ -32,7 +27,8 @@ fn the_child() {
 
 /// The options that start a child with a role; it may put pictures into `folder`.
 pub(crate) fn options(role: &str, folder: &Path) -> ProcessOptions {
-    let script = "WAYWORD_TEST_ROLE=$1 WAYWORD_TEST_FOLDER=$2 exec \"$0\" --exact the_child --nocapture 3>&1 1>&2";
+    let script =
+        "WAYWORD_TEST_ROLE=$1 WAYWORD_TEST_FOLDER=$2 exec \"$0\" --exact process::the_child --nocapture 3>&1 1>&2";
     let this = std::env::current_exe().unwrap();
     let arguments = ["-c", script, this.to_str().unwrap(), role, folder.to_str().unwrap()];
     ProcessOptions {
