@@ -51,13 +51,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn there_and_back_is_the_same(x in -1e3..1e3, y in -1e3..1e3, z in -1e3..1e3) {
+        fn axes_round_trip_returns_the_place(x in -1e3..1e3, y in -1e3..1e3, z in -1e3..1e3) {
             let place = DVec3::new(x, y, z);
             prop_assert_eq!(habitat_from_wayword(wayword_from_habitat(place)), place);
         }
 
         #[test]
-        fn a_heading_is_the_way_that_its_rotation_looks(heading_rad in -7.0..7.0f64) {
+        fn habitat_rotation_looks_along_its_heading(heading_rad in -7.0..7.0f64) {
             let forward = forward_from_habitat_rotation(habitat_rotation_from_heading(heading_rad));
             prop_assert!((forward - Heading::new(heading_rad).unwrap().direction()).length() < 1e-9);
         }

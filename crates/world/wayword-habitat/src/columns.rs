@@ -1,4 +1,7 @@
-//! What lies straight above and below a position in a scene, and between two positions.
+//! Looks up the triangles of a scene by their position seen from above.
+//!
+//! The triangles are sorted into the cells of a grid on the ground. So a question about one vertical line (is there a ceiling, how
+//! far is the floor) reads one cell, and a question about a straight line between two positions reads the cells along it.
 
 use glam::Vec3;
 use wayword_core::DVec3;
@@ -19,7 +22,7 @@ const HEADROOM_M: f64 = 1.8;
 #[derive(Debug)]
 pub(crate) struct Columns {
     triangles: Vec<[Vec3; 3]>,
-    /// What each triangle belongs to, as the caller numbers it.
+    /// The caller's number for the owner of each triangle.
     tags: Vec<u32>,
     corner: glam::Vec2,
     side_m: f32,
@@ -30,7 +33,7 @@ pub(crate) struct Columns {
     members: Vec<u32>,
 }
 
-/// What is above a position on the ground, and below it.
+/// The cover above a position on the ground: a ceiling, or the sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Over {
     /// A ceiling; its height above the ground, metres.
@@ -46,7 +49,7 @@ impl Columns {
         Self::tagged(triangles.map(|triangle| (triangle, 0)))
     }
 
-    /// Columns of triangles that belong to something, which [`Columns::tags_at`] returns.
+    /// Columns of triangles with a number each, which [`Columns::tags_at`] returns. Upright triangles are left out.
     pub(crate) fn tagged(triangles: impl Iterator<Item = ([Vec3; 3], u32)>) -> Self {
         // An upright triangle has no area seen from above.
         let lies = |[a, b, c]: &[Vec3; 3]| (*b - *a).truncate().perp_dot((*c - *a).truncate()).abs() > 1e-9;
@@ -54,7 +57,7 @@ impl Columns {
         Self::sorted(triangles, tags)
     }
 
-    /// Columns that hold the upright triangles too, for [`Columns::is_open`].
+    /// Columns that include the upright triangles, for [`Columns::is_open`].
     pub(crate) fn with_walls(triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
         let triangles: Vec<[Vec3; 3]> = triangles.filter(is_finite).collect();
         let tags = vec![0; triangles.len()];
@@ -69,7 +72,7 @@ impl Columns {
         let mut columns = Self { triangles, tags, corner: low, side_m: FINEST_M, size: [1, 1], starts, members };
         let extent = high - low;
         loop {
-            // Casts saturate; one more cell holds what lies on the far edge.
+            // Casts saturate; the additional cell takes the triangles on the far edge.
             columns.size = [extent.x, extent.y].map(|side| (side / columns.side_m) as usize + 1);
             let cells = columns.size[0] as u64 * columns.size[1] as u64;
             let touched: u64 = columns.triangles.iter().map(|triangle| columns.touched(triangle)).sum();
@@ -150,8 +153,8 @@ impl Columns {
         below.min_by(f64::total_cmp)
     }
 
-    /// Whether no triangle stands on the straight line between two positions. What touches its ends does not count.
-    /// `budget` is lowered by the number of triangles that were looked at; the line counts as open once it is spent.
+    /// Whether no triangle blocks the straight line between two positions. A triangle that only touches an end does not block it.
+    /// `budget` is lowered by the number of triangles that were tested; once it is spent, the line counts as open.
     pub(crate) fn is_open(&self, from: DVec3, to: DVec3, budget: &mut u64) -> bool {
         let mut cells = self.cells_along(from, to);
         !cells.any(|cell| {
@@ -182,18 +185,18 @@ impl Columns {
         })
     }
 
-    /// Most triangles that a look at one place goes through.
+    /// The largest number of triangles in one cell: the most that a look-up at one position has to test.
     pub(crate) fn most_near(&self) -> usize {
         self.starts.windows(2).map(|cell| (cell[1] - cell[0]) as usize).max().unwrap_or_default()
     }
 
-    /// The same surfaces, in no order: height in metres, and the tag of the triangle.
+    /// The surfaces that a vertical line through a position meets, in no order: height in metres, and the triangle's tag.
     pub(crate) fn tags_at(&self, place: DVec3) -> impl Iterator<Item = (f64, u32)> {
         let members = self.near(place).iter().map(|number| *number as usize);
         members.filter_map(move |number| Some((met(&self.triangles[number], place)?.0, self.tags[number])))
     }
 
-    /// What is above a position on the ground.
+    /// The cover above a position on the ground.
     pub(crate) fn over(&self, ground: DVec3) -> Over {
         let surfaces = self.surfaces(ground);
         if let Some((height_m, _)) = surfaces.iter().find(|(height_m, _)| *height_m > ground.z + FEET_M) {
@@ -206,7 +209,7 @@ impl Columns {
 }
 
 impl Over {
-    /// Whether a person can stand upright there.
+    /// Whether a person can stand upright under it.
     pub(crate) fn is_headroom(&self) -> bool {
         !matches!(self, Self::Ceiling(height_m) if *height_m < HEADROOM_M)
     }
@@ -216,14 +219,14 @@ fn is_finite(triangle: &[Vec3; 3]) -> bool {
     triangle.iter().all(|corner| corner.is_finite())
 }
 
-/// The cells of a row of `count` that lie between two positions, in sides of a cell.
+/// The range of cells, of `count` in a row, between two positions that are measured in sides of a cell.
 fn strip(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
-    // Casts saturate, and a hair more is looked at than needed, because the line may run along the border of cells.
+    // Casts saturate. The range is a little wider than needed, because the line may run along the border of cells.
     let end = if high < 0.0 { 0 } else { ((high + 1e-6) as usize).saturating_add(1).min(count) };
     ((low - 1e-6).max(0.0) as usize).min(end)..end
 }
 
-/// Whether a triangle stands on the straight line between two positions (Möller and Trumbore's test).
+/// Whether a triangle crosses the straight line between two positions (Möller and Trumbore's test).
 fn stands_between([a, b, c]: &[Vec3; 3], from: DVec3, to: DVec3) -> bool {
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
     let (way, ab, ac) = (to - from, b - a, c - a);
@@ -274,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn firm_ground_is_no_roof_however_thick() {
+    fn solid_ground_of_any_thickness_is_no_roof() {
         let block = columns(&[sheet(4.0, -3.0, false), sheet(4.0, 0.0, true)]);
         assert_eq!(block.over(DVec3::new(1.0, 0.5, 0.0)), Over::Sky);
         // A crawl space does not count as a room.
@@ -325,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_looked_at_within_its_budget() {
+    fn is_open_stops_when_its_budget_is_spent() {
         let mut budget = 2;
         assert!(walled().is_open(DVec3::new(-3.0, -3.0, 1.5), DVec3::new(3.0, -3.0, 1.5), &mut budget));
         assert_eq!(budget, 0);
@@ -333,7 +336,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_wall_on_a_line_is_missed(a in [-3.9..3.9_f64, -3.9..3.9], b in [-3.9..3.9_f64, -3.9..3.9]) {
+        fn is_open_misses_no_wall_on_a_line(a in [-3.9..3.9_f64, -3.9..3.9], b in [-3.9..3.9_f64, -3.9..3.9]) {
             let eye = |[x, y]: [f64; 2]| DVec3::new(x, y, 1.2);
             let (walled, from, to) = (walled(), eye(a), eye(b));
             let all = walled.triangles.iter().any(|triangle| stands_between(triangle, from, to));

@@ -1,4 +1,4 @@
-//! Reading files, and what can be wrong with them.
+//! Reads whole files up to a size limit. The errors name the file, the reason and a way out.
 
 use std::path::{Path, PathBuf};
 use wayword_core::PlatformError;
@@ -9,9 +9,9 @@ use wayword_core::PlatformError;
 pub struct FileError {
     /// Which file.
     pub file: PathBuf,
-    /// What is wrong, with the item, line or byte.
+    /// The fault, with the item, line or byte.
     pub reason: String,
-    /// What to do.
+    /// A way out.
     pub hint: &'static str,
 }
 
@@ -27,7 +27,7 @@ impl From<FileError> for PlatformError {
     }
 }
 
-/// A file's bytes; `None` if there is no such file.
+/// Reads a file's bytes, at most `most` of them; `None` if the file does not exist.
 pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<Vec<u8>>, FileError> {
     let wrong = |error: std::io::Error| FileError::new(file, error.to_string(), hint);
     let about = match std::fs::metadata(file) {
@@ -48,12 +48,12 @@ pub(crate) fn bytes_if_there(file: &Path, most: u64, hint: &'static str) -> Resu
     Ok(Some(bytes))
 }
 
-/// A file's bytes.
+/// Reads the bytes of a file that must exist.
 pub(crate) fn bytes(file: &Path, most: u64, hint: &'static str) -> Result<Vec<u8>, FileError> {
     bytes_if_there(file, most, hint)?.ok_or_else(|| FileError::new(file, "there is no such file", hint))
 }
 
-/// A file's text; `None` if there is no such file.
+/// Reads a UTF-8 file; `None` if it does not exist.
 pub(crate) fn text_if_there(file: &Path, most: u64, hint: &'static str) -> Result<Option<String>, FileError> {
     let Some(bytes) = bytes_if_there(file, most, hint)? else { return Ok(None) };
     wayword_world::files::text(bytes).map(Some).map_err(|reason| FileError::new(file, reason, hint))

@@ -1,4 +1,4 @@
-//! Turns regions into polygons, and repairs contours that cannot be cut into triangles.
+//! Turns the regions of a baked navmesh into polygons, and repairs contours that cannot be cut into triangles.
 
 use super::Voxels;
 use rerecast::{BuildContoursFlags, CompactHeightfield, Contour, ContourSet, PolygonNavmesh};
@@ -7,9 +7,9 @@ use rerecast::{BuildContoursFlags, CompactHeightfield, Contour, ContourSet, Poly
 const FINER: [f32; 3] = [0.5, 0.25, 0.0];
 
 /// The polygons of all regions. Simplifying a border can make it cross itself. Recast then warns and keeps the
-/// triangles that it has cut so far (`rcBuildPolyMesh`); rerecast gives up. This function simplifies such a contour
-/// less. That changes nothing at the edges to other regions, because those are never simplified. It drops a contour
-/// only if this does not help.
+/// triangles that it has cut so far (`rcBuildPolyMesh`), but rerecast gives up. This function simplifies such a contour
+/// less. The edges to other regions stay the same, because those are never simplified. If even the full contour fails, it
+/// is dropped.
 pub(super) fn polygons(
     open: &CompactHeightfield,
     voxels: &Voxels,

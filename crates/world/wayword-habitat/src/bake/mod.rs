@@ -1,4 +1,7 @@
-//! Bakes navmeshes for scenes that have none, as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
+//! Bakes navmeshes for scenes without one, as Habitat does (`PathFinder::Impl::build`, habitat-sim 0.3.3).
+//!
+//! Recast's steps are: mark the voxels that triangles touch, find the free space above them, keep the parts that an agent can walk
+//! on, and outline these with polygons.
 
 mod contours;
 mod voxels;
@@ -43,7 +46,7 @@ pub enum BakeError {
         field: &'static str,
         /// Its value.
         value: f32,
-        /// What is allowed.
+        /// The allowed values.
         wanted: &'static str,
     },
     /// Recast failed.
@@ -55,7 +58,7 @@ pub enum BakeError {
 }
 
 impl BakeError {
-    /// What to do about it.
+    /// A way out of the error.
     #[must_use]
     pub fn hint(&self) -> &'static str {
         match self {
@@ -198,8 +201,7 @@ fn surface(polygons: &PolygonNavmesh, detail: &DetailNavmesh) -> Surface {
     }
 }
 
-/// The detail mesh of a polygon: its vertices after the polygon's own corners, which come first, and triangles with
-/// their flags.
+/// The detail mesh of a polygon: its additional vertices after the polygon's own corners, and triangles with their flags.
 fn detail_of(detail: &DetailNavmesh, mesh: &SubMesh, corners: usize) -> (Vec<[f32; 3]>, Vec<[u8; 4]>) {
     let first = mesh.base_vertex_index as usize + corners;
     let end = mesh.base_vertex_index as usize + mesh.vertex_count as usize;
@@ -253,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_baked_is_said() {
+    fn bake_reports_why_a_scene_cannot_be_baked() {
         assert_eq!(bake(&Model::default(), &NavMeshSettings::default()), Err(BakeError::Empty));
         let mut wide = room(0.8);
         wide.meshes[0].positions[1].x = 9e5;

@@ -1,8 +1,8 @@
-//! Fills voxels with triangles.
+//! Marks the voxels that triangles touch.
 //!
-//! The cutting is done here, as Recast does it (`rasterizeTri`), because rerecast 0.5.0 goes wrong where rounding leaves
-//! nothing of a triangle for its last row or column of voxels: it then takes an old piece again, and walls stand where
-//! there are none. Each piece goes to rerecast as a triangle within one column of voxels, which it need not cut.
+//! The triangles are cut here, as Recast does it (`rasterizeTri`), and not by rerecast 0.5.0. Its cutting goes wrong where
+//! rounding leaves nothing of a triangle for its last row or column of voxels: it then takes an old piece again, and walls
+//! appear in other places. Each piece goes to rerecast as a triangle within one column of voxels, which it need not cut.
 
 use glam::Vec3A;
 use rerecast::{AreaType, Heightfield, TriMesh};
@@ -38,8 +38,8 @@ fn fill_one(
     Ok(())
 }
 
-/// The parts of a convex polygon in slices of a thickness along an axis, each with its number; slices before the first
-/// and after the last of `count` are left out.
+/// Cuts a convex polygon into slices of equal thickness along an axis, each with its number. Slices before the first and
+/// after the last of `count` are left out.
 fn slices(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) -> Vec<(i32, Vec<Vec3A>)> {
     let ends = left.iter().fold((f32::MAX, f32::MIN), |(a, b), at| (a.min(at[axis]), b.max(at[axis])));
     let number = |at: f32| (((at - low) / side).floor() as i32).clamp(-1, count - 1);
@@ -55,7 +55,7 @@ fn slices(mut left: Vec<Vec3A>, axis: usize, low: f32, side: f32, count: i32) ->
     slices
 }
 
-/// A convex polygon, cut at a place along an axis: the part up to there, and the part from there on.
+/// Cuts a convex polygon at a position on an axis: the part below, and the part above.
 fn cut(polygon: &[Vec3A], axis: usize, at: f32) -> (Vec<Vec3A>, Vec<Vec3A>) {
     let (mut below, mut above) = (Vec::with_capacity(polygon.len() + 1), Vec::with_capacity(polygon.len() + 1));
     for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
@@ -100,7 +100,7 @@ mod tests {
         }
     }
 
-    /// The columns in which something stands.
+    /// The columns of voxels that are filled.
     fn filled(triangle: [Vec3A; 3]) -> Vec<(u16, u16)> {
         let aabb = Aabb3d { min: glam::Vec3::ZERO, max: glam::Vec3::new(4.0, 2.5, 4.0) };
         let mut solid = HeightfieldBuilder { aabb, cell_size: 0.05, cell_height: 0.2 }.build().unwrap();
@@ -112,8 +112,8 @@ mod tests {
     }
 
     #[test]
-    fn a_wall_stands_where_it_is_and_nowhere_else() {
-        // A post whose sides lie on the borders of voxels.
+    fn filled_voxels_lie_only_near_the_triangle() {
+        // A post with its sides on the borders of voxels.
         for at in [1.0, 1.05, 2.1, 3.3, 3.85_f32] {
             let post = [Vec3A::new(at, 0.0, at), Vec3A::new(at + 0.15, 2.4, at), Vec3A::new(at, 2.4, at)];
             let columns = filled(post);

@@ -1,4 +1,5 @@
-//! Compares the search with a slow but exact one, on squares with holes: it tries straight lines between all corners.
+//! Compares the search for shortest ways with a slow but exact one on squares with holes. The exact search joins all corners
+//! that see each other by straight lines and runs Dijkstra's algorithm on them.
 
 use super::{Ground, tests::paved};
 use glam::DVec2;
@@ -19,8 +20,8 @@ fn ground(squares: &Squares) -> Ground {
     Ground::new(&paved(&squares.iter().map(slab).collect::<Vec<_>>()))
 }
 
-/// Whether one can walk straight from one place to another: every stretch between two grid lines lies in a square of
-/// ground or, if it runs along a grid line, beside one. A line may pass through a corner in which two squares touch.
+/// Whether one can walk straight from one place to another: every stretch between two grid lines must be in a square of
+/// ground or, if it runs along a grid line, next to one. A line may pass through a corner in which two squares touch.
 fn is_open(squares: &Squares, a: DVec2, b: DVec2) -> bool {
     let mut shares = vec![0.0, 1.0];
     for line in 0..=SIDE {
@@ -40,7 +41,7 @@ fn is_open(squares: &Squares, a: DVec2, b: DVec2) -> bool {
     shares.windows(2).all(|pair| is_ground(a.lerp(b, (pair[0] + pair[1]) / 2.0)))
 }
 
-/// The length of the shortest way over corners with a free straight line between them.
+/// The length of the shortest way from corner to corner along straight lines over the ground.
 fn shortest(squares: &Squares, from: DVec2, to: DVec2) -> Option<f64> {
     let mut places = vec![from, to];
     let corners: BTreeSet<(i64, i64)> =
@@ -86,7 +87,7 @@ proptest! {
     }
 }
 
-/// Whether two squares touch only in a corner: there the slow search passes through, but the other one must not.
+/// Whether two squares touch only in a corner. There the exact search passes through, but the tested one must not.
 fn pinched(squares: &Squares) -> bool {
     let has = |x: i64, y: i64| squares.contains(&(x, y));
     (0..SIDE - 1).any(|x| {

@@ -1,4 +1,4 @@
-//! Where the frames of a way are.
+//! Places the frames of a path at equal distances along a way.
 
 use super::Ground;
 use crate::axes::EYE_M;
@@ -25,7 +25,7 @@ pub fn stops_along(ground: &Ground, way: &Way, interval_m: f64) -> Vec<Stop> {
     (0..=count).map(stop).collect()
 }
 
-/// The place after `left_m` metres.
+/// The place at a distance of `left_m` metres from the start of the way.
 fn place_at(way: &Way, mut left_m: f64) -> DVec3 {
     for pair in way.corners.windows(2) {
         let length_m = pair[0].distance(pair[1]);

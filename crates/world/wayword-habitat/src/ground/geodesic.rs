@@ -1,9 +1,9 @@
-//! Shortest ways over the ground.
+//! Shortest ways over the ground, measured as Habitat measures geodesic distances.
 
 use super::{Foothold, Ground};
 use wayword_core::{DVec3, Way};
 
-/// Why there is no way.
+/// Why there is no way between two places.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoWay {
     /// There is no ground near this place.
@@ -36,7 +36,7 @@ impl Ground {
         Ok(Way { corners, length_m })
     }
 
-    /// Where the shortest way bends; `None` if there is no way.
+    /// The corners of the shortest way between its start and its end; `None` if there is no way.
     fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         if start.island != end.island {
             return None;

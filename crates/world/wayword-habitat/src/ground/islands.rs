@@ -1,4 +1,4 @@
-//! Finds the connected parts of the ground.
+//! Finds the connected parts of the ground by a search over shared edges.
 
 use super::{Island, polygon::Polygon};
 use std::sync::OnceLock;

@@ -7,14 +7,14 @@ use wayword_core::DVec3;
 const SLICE_M: f64 = 0.25;
 /// Least height between two storeys, metres.
 const STOREY_M: f64 = 2.0;
-/// A storey has at least this share of the area of the largest one; a landing has less.
+/// Least area of a storey, as a share of the largest one's area; a landing has less.
 const LEAST_SHARE: f64 = 0.15;
 /// A place at most this far below a storey's floor belongs to that storey, because it is nearer than the storey below;
 /// metres.
 const BELOW_M: f64 = 1.0;
 
-/// Heights of the storeys of the island that paths stay on, from the lowest. The slice with the most ground is a
-/// storey, then the slice with the next most, and so on, if it is far enough from the storeys found before.
+/// Heights of the storeys of the island that paths stay on, from the lowest. The slice with the most ground is a storey. Then the
+/// slice with the next most ground is one, and so on, if it is far enough from the storeys found before.
 pub(super) fn storeys(ground: &Ground) -> Vec<f64> {
     let Some(island) = ground.islands.get(ground.main) else { return Vec::new() };
     let mut slices: std::collections::BTreeMap<i64, f64> = std::collections::BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Finds the ground nearest to a place that need not lie on it: Detour's `findNearestPoly`, as Habitat calls it.
+//! Finds the ground nearest to any place: Detour's `findNearestPoly`, as Habitat calls it.
 
 use super::{
     Ground,
@@ -27,7 +27,7 @@ impl Ground {
         self.nearest_of(place, |_| true)
     }
 
-    /// The same among the polygons of one island.
+    /// The ground of one island nearest to a place, under the same rules as [`Self::nearest`].
     #[must_use]
     pub fn nearest_on(&self, island: usize, place: DVec3) -> Option<Foothold> {
         self.nearest_of(place, |polygon| polygon.island == island)

@@ -1,9 +1,9 @@
-//! One island in the form that the search for shortest ways needs.
+//! Prepares one island for the search for shortest ways.
 //!
 //! The search (polyanya: Cui, Harabor, Grastien, "Compromise-free Pathfinding on a Navigation Mesh", IJCAI 2017) works
 //! in the plane only. It goes from polygon to polygon over shared edges, so storeys that lie above one another do not
-//! disturb it. But it identifies the places at which ways bend by their coordinates, so no two of them may coincide,
-//! and the start and the end must be given by their polygon.
+//! disturb it. But it identifies the places at which ways bend by their coordinates. So no two vertices may coincide,
+//! and the start and the end must be given with their polygons.
 
 use super::{Foothold, polygon::Polygon};
 use glam::{DVec2, Vec2};
@@ -11,7 +11,7 @@ use polyanya::{Mesh, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DVec3, contain::decoded};
 
-/// Two vertices on doors between tiles are merged if they are nearer than this seen from above, metres.
+/// Vertices at the ends of portals are merged if they are nearer than this seen from above, metres.
 const WELD_M: f64 = 1e-3;
 /// They are merged only if their heights also differ by less than this, metres.
 const SAME_STOREY_M: f64 = 0.5;
@@ -24,7 +24,7 @@ const NOISE_M: f32 = 3e-3;
 #[derive(Debug)]
 pub(super) struct Maze {
     mesh: Mesh,
-    /// The mesh's coordinates are relative to this point, so that they are small.
+    /// The mesh's coordinates are relative to this point, so that they stay small and `f32` is exact enough.
     origin: DVec2,
     /// The position of each vertex of the search.
     places: Vec<DVec3>,
@@ -57,9 +57,9 @@ impl Maze {
         Some(Self { mesh, origin, places: outlines.places, numbers })
     }
 
-    /// Where the shortest way between two places of the island bends. Because the search rounds, it can miss a way
-    /// through a narrow place that it finds from the other end. So it runs from both ends, and the shorter way is
-    /// taken.
+    /// The places at which the shortest way between two places of the island bends. The search rounds, so it can miss a way
+    /// through a narrow place that it finds from the other end. Therefore it runs from both ends, and the shorter result
+    /// is used.
     pub(super) fn bends(&self, start: &Foothold, end: &Foothold) -> Option<Vec<DVec3>> {
         let there = self.searched(start, end);
         let mut back = self.searched(end, start);
@@ -88,8 +88,7 @@ impl Maze {
         for bend in path.path.split_last().map_or(&[][..], |(_, before)| before) {
             let later = bend_of(layer, &rings, reached, *bend, BEND_M);
             let (at, vertex) = later.or_else(|| bend_of(layer, &rings, 0, *bend, f32::MAX))?;
-            // The way leaves a bend through the last polygon around it, so the next bend lies in none of the polygons
-            // before.
+            // The way leaves a bend through the last polygon around it, so the next bend does not belong to any earlier polygon.
             let around = rings.iter().skip(at + 1).take_while(|ring| ring.contains(&vertex)).count();
             reached = at + around;
             let place = self.places.get(vertex as usize)?;
@@ -100,8 +99,8 @@ impl Maze {
         Some(bends)
     }
 
-    /// A place in the search's coordinates. The search finds polygons by coordinates and mean height, and under a slope
-    /// it can find a polygon of another storey: then a place a little further inside is tried.
+    /// A place in the search's coordinates. The search finds polygons by coordinates and mean height. Under a slope it can
+    /// therefore return a polygon of another storey; then a place a little further inside is tried.
     fn coords(&self, foothold: &Foothold) -> Option<polyanya::Coords> {
         let number = *self.numbers.get(&foothold.polygon)?;
         let layer = self.mesh.layers.first()?;
@@ -120,7 +119,7 @@ impl Maze {
         })
     }
 
-    /// Whether two polygons share an edge. A place on that edge belongs to both.
+    /// Whether two polygons share an edge. A place on that edge belongs to both of them.
     fn touch(&self, a: u32, b: u32) -> bool {
         let layer = self.mesh.layers.first();
         let ring = |number: u32| layer.and_then(|layer| layer.polygons.get(number as usize)).map(|p| &p.vertices);
@@ -129,9 +128,9 @@ impl Maze {
     }
 }
 
-/// The vertex at which a way bends, at most `most_m` metres away, and its polygon: the first, from `first` on, of the
-/// polygons that the way goes through that has the vertex. A vertex of another storey may be as near, but only in a
-/// later polygon.
+/// The vertex at which a way bends, at most `most_m` metres from `bend`, and the number of its polygon in `rings`, the
+/// outlines that the way goes through. The first outline that has the vertex counts, beginning with number `first`. A
+/// vertex of another storey may be as near, but it belongs to a later outline.
 fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, most_m: f32) -> Option<(usize, u32)> {
     let off = |vertex: u32| layer.vertices.get(vertex as usize).map_or(f32::MAX, |vertex| vertex.coords.distance(bend));
     let nearest = |ring: &&[u32]| ring.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)));
@@ -141,7 +140,7 @@ fn bend_of(layer: &polyanya::Layer, rings: &[&[u32]], first: usize, bend: Vec2, 
     near().find(|(_, vertex)| off(*vertex) <= least + NOISE_M && off(*vertex) <= most_m)
 }
 
-/// The polygons' outlines with shared vertices, and a vertex at both ends of every door.
+/// The polygons' outlines with shared vertices, and a vertex at both ends of every portal.
 struct Outlines {
     places: Vec<DVec3>,
     /// For each polygon, counter-clockwise.
@@ -170,7 +169,7 @@ impl Outlines {
         Self { places: welds.places, rings }
     }
 
-    /// The polygons at each vertex, and `u32::MAX` where it lies on the border.
+    /// The polygons at each vertex, and also `u32::MAX` if the vertex lies on the border of the island.
     fn around(&self) -> Vec<Vec<u32>> {
         let mut around: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); self.places.len()];
         let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
@@ -189,7 +188,7 @@ impl Outlines {
 }
 
 /// Vertices by position. Vertices at the same position seen from above are merged, unless they are a storey apart.
-/// Tiles that meet in a door may differ in height by one step (`agent_max_climb_m`).
+/// Tiles that meet in a portal may differ in height by one step (`agent_max_climb_m`).
 #[derive(Default)]
 struct Welds {
     places: Vec<DVec3>,
@@ -215,7 +214,8 @@ impl Welds {
     }
 }
 
-/// The places seen from above, relative to the origin. If two coincide, one is moved by the smallest possible amount.
+/// The places seen from above, relative to the origin. If two of them coincide, one is moved by the smallest possible
+/// amount.
 fn distinct(places: &[DVec3], origin: DVec2) -> Vec<Vec2> {
     let mut taken = BTreeSet::new();
     let flat = |place: &DVec3| {

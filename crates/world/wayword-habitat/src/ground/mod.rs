@@ -1,4 +1,4 @@
-//! Walkable ground: the polygons of a navmesh and their neighbours.
+//! Walkable ground: the polygons of a navmesh and their neighbours, with shortest ways, storeys and viewpoints on them.
 //!
 //! All in Wayword's frame. Ground is what Habitat's `PathFinder` counts as ground (habitat-sim 0.3.3,
 //! `PathFinder.cpp`): polygons without area are left out, and the polygons of an island can be reached from one another
@@ -85,7 +85,7 @@ impl Ground {
         Self { polygons, islands, main: 0, storeys_m: Vec::new(), climb_m }.keeping_to(0)
     }
 
-    /// The same ground, with paths that stay on this island; storeys are counted on it.
+    /// The same ground with another island for paths. Storeys are counted on that island.
     #[must_use]
     pub fn keeping_to(mut self, island: usize) -> Self {
         self.main = island;

@@ -76,18 +76,18 @@ impl Polygon {
         self.corners.iter().zip(self.corners.iter().cycle().skip(1))
     }
 
-    /// All polygons that border on it.
+    /// Indices of the polygons that share an edge with it, in its own tile and in others.
     pub(super) fn neighbours(&self) -> impl Iterator<Item = usize> {
         let portals = self.corners.iter().flat_map(|corner| &corner.portals).map(|portal| portal.polygon);
         self.corners.iter().filter_map(|corner| corner.neighbour).chain(portals)
     }
 
-    /// Whether a place lies in it seen from above, its edges included.
+    /// Whether a place is inside it seen from above; its edges count as inside.
     pub(super) fn holds(&self, place: DVec3) -> bool {
         self.edges().all(|(a, b)| side(a.place, b.place, place) >= 0.0)
     }
 
-    /// The height of its surface below or above a place that lies in it seen from above.
+    /// The height of its surface at a place that is inside it seen from above.
     pub(super) fn height_m(&self, place: DVec3) -> Option<f64> {
         let over = |triangle: &&[DVec3; 3]| {
             let [a, b, c] = **triangle;
@@ -104,7 +104,7 @@ impl Polygon {
         Some(a.z + (b.z - a.z) * to_b + (c.z - a.z) * to_c)
     }
 
-    /// The place on its border that is nearest to a place outside, seen from above.
+    /// The place on its border that is nearest to another place, seen from above.
     pub(super) fn nearest_on_border(&self, place: DVec3) -> DVec3 {
         let edges = self.edges().map(|(a, b)| nearest_on_edge(a.place, b.place, place));
         let off = |on: &DVec3| (*on - place).truncate().length_squared();

@@ -1,30 +1,30 @@
-//! Doors between tiles: edges on a tile's side that lie along edges of the neighbouring tile
-//! (`dtNavMesh::connectExtLinks`).
+//! Joins tiles: finds the edges on a tile's side that lie along edges of the neighbouring tile, and enters a portal at
+//! both (`dtNavMesh::connectExtLinks`).
 
 use super::polygon::{Polygon, Portal, world};
 use crate::navmesh::{Behind, NavMesh};
 use std::collections::BTreeMap;
 use wayword_core::DVec3;
 
-/// Least length that two edges share at a door, metres.
+/// Least length that two edges must share for a portal, metres.
 const LEAST_M: f64 = 0.02;
 /// How far the sides of two tiles may lie apart, metres.
 const APART_M: f64 = 0.01;
-/// Most doors in one edge. Detour allows four. Without a limit, edges that lie on top of one another would all be
-/// joined with all.
+/// Most portals in one edge. Detour allows four. Without a limit, every one of many edges at the same place would be
+/// joined with every other.
 const MAX_DOORS: usize = 32;
 
-/// An edge on a side of a tile.
+/// An edge on a side of a tile, where a portal may be.
 #[derive(Debug)]
 struct Opening {
     polygon: usize,
     corner: usize,
     ends: [DVec3; 2],
-    /// 0 if one crosses the side along Habitat's x, 1 along its z.
+    /// The axis along which one crosses the side: 0 for Habitat's x, 1 for its z.
     axis: usize,
 }
 
-/// Finds the doors and enters them on both sides.
+/// Finds the portals between neighbouring tiles, and enters each on both sides.
 pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
     // Keyed by the tile's place and the side: 0 is +x, 2 is +z, 4 is -x, 6 is -z.
     let mut sides: BTreeMap<([i32; 2], u8), Vec<Opening>> = BTreeMap::new();
@@ -61,13 +61,13 @@ pub(super) fn open(mesh: &NavMesh, polygons: &mut [Polygon], climb_m: f64) {
     }
 }
 
-/// The corner whose edge has these ends, in either order.
+/// The corner at which the edge with these ends begins, whatever their order.
 fn edge_of(polygon: &Polygon, ends: [DVec3; 2]) -> Option<usize> {
     polygon.edges().position(|(a, b)| ends == [a.place, b.place] || ends == [b.place, a.place])
 }
 
 fn join(polygons: &mut [Polygon], one: &Opening, other: &Opening, climb_m: f64) {
-    // World x is Habitat's x and world y is its -z. The side runs along the axis that does not cross it.
+    // Wayword's x is Habitat's x, and Wayword's y is Habitat's -z. The side runs along the axis that does not cross it.
     let across = |place: DVec3| if one.axis == 0 { place.x } else { place.y };
     let along = |place: DVec3| if one.axis == 0 { place.y } else { place.x };
     if (across(one.ends[0]) - across(other.ends[0])).abs() > APART_M {

@@ -1,5 +1,8 @@
-//! The viewpoint graph of an island: places well inside the ground, joined if the way between them is short and nearly
-//! straight.
+//! Makes a viewpoint graph for an island: viewpoints well inside the ground, with an edge between two of them if the way
+//! over the ground is short and nearly straight.
+//!
+//! The steps are those of a probabilistic road map: try random places, keep those far from walls and from one another, join near
+//! ones, and connect the remaining parts.
 
 use super::{Ground, polygon::nearest_on_edge};
 use crate::axes::EYE_M;
@@ -9,9 +12,9 @@ use wayword_core::{DVec3, ViewpointGraph, ViewpointId, Way, graph::GraphError, r
 const APART_M: f64 = 1.8;
 /// Longest edge, metres.
 const REACH_M: f64 = 4.0;
-/// The way along an edge may be longer than the straight line by this factor.
+/// Greatest length of the way along an edge, as a multiple of the straight line's length.
 const DETOUR: f64 = 1.1;
-/// If two edges leave a viewpoint within this angle, the longer one is dropped, because it leads past the other's end.
+/// If two edges leave a viewpoint within this angle, the longer one is dropped: it would lead past the end of the other.
 const CLOSE_RAD: f64 = 0.35;
 /// Random places that are tried, for each square metre of ground.
 const TRIES_PER_M2: f64 = 12.0;
@@ -22,14 +25,14 @@ const MAX_TRIES: usize = 40_000;
 const MAX_PLACED: usize = 2000;
 /// Most failed searches for a way between two parts.
 const MAX_IN_VAIN: usize = 4000;
-/// A distance to the border beyond this makes a place no better, metres.
+/// Distances to the border that exceed this count as equal, metres.
 const OPEN_ENOUGH_M: f64 = 1.0;
 
-/// A road map over an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be reached
-/// from every other; names count from `v0000`.
+/// Makes a road map of an island (0 is the largest). The same ground gives the same graph. Every viewpoint can be
+/// reached from every other; the ids are `v0000`, `v0001` and so on.
 ///
 /// # Errors
-/// Never for ground whose coordinates are finite; the graph checks names and positions itself.
+/// Never if the coordinates of the ground are finite; the graph checks names and positions itself.
 pub fn viewpoint_graph(ground: &Ground, island: usize) -> Result<ViewpointGraph, GraphError> {
     let mut map = RoadMap { ground, island, nodes: Vec::new(), edges: Vec::new() };
     map.place();
@@ -47,7 +50,7 @@ struct RoadMap<'a> {
 }
 
 impl RoadMap<'_> {
-    /// Places viewpoints: open places first, then places nearer to walls, if no other viewpoint is near.
+    /// Places viewpoints in open places first, then nearer to walls, wherever no other viewpoint is near.
     fn place(&mut self) {
         let area_m2 = self.ground.islands.get(self.island).map_or(0.0, |island| island.area_m2);
         let tries = ((area_m2 * TRIES_PER_M2).ceil() as usize).clamp(1, MAX_TRIES);
@@ -67,7 +70,7 @@ impl RoadMap<'_> {
                 self.nodes.push(place);
             }
         }
-        // By height and position, so that names give a hint of the position.
+        // Sorted by height and position, so that the number in an id gives a hint of the position.
         self.nodes.sort_by(|a, b| {
             let key = |place: &DVec3| [(place.z / 0.5).floor(), (place.y / 2.0).floor(), place.x];
             let (a, b) = (key(a), key(b));
@@ -122,8 +125,8 @@ impl RoadMap<'_> {
         self.ground.geodesic(self.nodes[a], self.nodes[b]).ok()
     }
 
-    /// Joins parts that are still unconnected, the nearest first, with a viewpoint at every bend of the way between
-    /// them.
+    /// Joins parts that are still unconnected, the nearest pairs first. Every bend of the way between them becomes a
+    /// viewpoint.
     fn connect(&mut self) {
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         let parts = self.parts();
@@ -161,7 +164,7 @@ impl RoadMap<'_> {
         }
     }
 
-    /// For each node, the smallest node of its connected part.
+    /// For each node, the smallest node of its connected part, as the name of that part.
     fn parts(&self) -> Vec<usize> {
         let mut parts: Vec<usize> = (0..self.nodes.len()).collect();
         for (a, b) in &self.edges {
@@ -186,7 +189,7 @@ impl RoadMap<'_> {
     }
 }
 
-/// Whether two places are far enough apart to be viewpoints both.
+/// Whether two places are far enough apart for both to be viewpoints.
 fn far(a: DVec3, b: DVec3) -> bool {
     let off = a - b;
     off.truncate().length() >= APART_M || off.z.abs() > 1.2

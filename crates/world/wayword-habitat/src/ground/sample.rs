@@ -4,7 +4,7 @@ use super::{Foothold, Ground};
 use rand::Rng;
 
 impl Ground {
-    /// A random place on an island (0 is the largest), uniform over its area; `None` if there is no such island.
+    /// A random place on an island (0 is the largest), uniform over its area; `None` if the island does not exist.
     #[must_use]
     pub fn random_place(&self, island: usize, rng: &mut impl Rng) -> Option<Foothold> {
         let members = &self.islands.get(island)?.polygons;

@@ -9,10 +9,10 @@ use wayword_core::DVec3;
 /// Most edges that one step crosses.
 const MAX_EDGES: usize = 256;
 
-/// Where a straight step ends.
+/// The end of a straight step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stride {
-    /// The place that it reaches.
+    /// The place that the step reaches.
     pub end: Foothold,
     /// Whether the ground ends before the step does.
     pub is_blocked: bool,
@@ -38,7 +38,7 @@ impl Ground {
         Stride { end: self.foothold_in(number, start.lerp(to, gone)), is_blocked: true }
     }
 
-    /// The place of a polygon that lies under or over `place`, or nearest to it.
+    /// The point of a polygon's surface under or over `place`, or else the nearest one on its border.
     fn foothold_in(&self, number: usize, place: DVec3) -> Foothold {
         let on = self.polygons.get(number).map(|polygon| match polygon.height_m(place) {
             Some(height_m) => place.with_z(height_m),
@@ -49,8 +49,8 @@ impl Ground {
     }
 }
 
-/// Where the line from `start` to `to` leaves a polygon: the share of the line, the corner whose edge it crosses, and
-/// the share of that edge. `None` if it ends in the polygon.
+/// Where the line from `start` to `to` leaves a polygon: the share of the line's length, the corner at which the crossed
+/// edge begins, and the share of that edge's length. `None` if the line ends in the polygon.
 fn exit(polygon: &Polygon, start: DVec3, to: DVec3) -> Option<(f64, &Corner, f64)> {
     let crossed = polygon.edges().filter_map(|(a, b)| {
         let (before, after) = (side(a.place, b.place, start), side(a.place, b.place, to));
@@ -64,7 +64,7 @@ fn exit(polygon: &Polygon, start: DVec3, to: DVec3) -> Option<(f64, &Corner, f64
     crossed.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The polygon behind a share of a corner's edge.
+/// The polygon behind an edge, at a share of the edge's length from its corner.
 fn behind(corner: &Corner, share: f64) -> Option<usize> {
     let portal = || corner.portals.iter().find(|portal| (portal.from..=portal.to).contains(&share));
     corner.neighbour.or_else(|| portal().map(|portal| portal.polygon))

@@ -48,8 +48,8 @@ pub(crate) fn ring() -> Vec<Vec<[f32; 3]>> {
     squares.map(|(x, y)| slab([x, x + 1.0], [y, y + 1.0], 0.0)).collect()
 }
 
-/// Two floors of 4 x 4 m above one another, made of strips, and a ramp beside them from the far end of the lower one to
-/// the near end of the upper one. The way up leads along the floor and back up the ramp, to a place above its start.
+/// Two floors of 4 x 4 m above one another, made of strips, and a ramp along their side from the far end of the lower one
+/// to the near end of the upper one. The way up leads along the floor and back up the ramp, to a place above its start.
 pub(crate) fn two_storeys() -> Vec<Vec<[f32; 3]>> {
     let strip = |n: u8, z: f32| slab([0.0, 4.0], [f32::from(n), f32::from(n) + 1.0], z);
     let mut polygons: Vec<_> = (0..4).map(|n| strip(n, 0.0)).collect();
@@ -65,7 +65,7 @@ fn at(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 #[test]
-fn ways_bend_around_what_is_no_ground() {
+fn ways_bend_around_holes_in_the_ground() {
     let ground = Ground::new(&paved(&ring()));
     assert!((ground.area_m2() - 8.0).abs() < 1e-6);
     let way = ground.geodesic(at(0.5, 1.5, 0.0), at(2.5, 1.4, 0.0)).unwrap();
@@ -93,7 +93,7 @@ fn a_place_under_another_floor_is_reached_by_the_ramp() {
 
 #[test]
 fn a_way_bends_twice_at_places_above_one_another() {
-    // Two rings, and stairs beside them that turn back: the way from a place to the one above it bends around both
+    // Two rings, and stairs at their side that turn back: the way from a place to the one above it bends around both
     // holes alike.
     let mut polygons = ring();
     polygons.extend(ring().into_iter().map(|polygon| polygon.into_iter().map(|[x, y, _]| [x, y, 3.0]).collect()));
@@ -116,7 +116,7 @@ fn a_way_bends_twice_at_places_above_one_another() {
 }
 
 #[test]
-fn who_stands_a_step_above_the_ground_stands_on_it() {
+fn nearest_ground_includes_the_height_of_a_step() {
     let ground = Ground::new(&paved(&[slab([0.0, 1.0], [0.0, 1.0], 0.0), slab([1.05, 2.0], [0.0, 1.0], 0.15)]));
     assert_eq!(ground.nearest(at(0.97, 0.5, 0.15)).unwrap().place, at(0.97, 0.5, 0.0));
 }
@@ -201,7 +201,7 @@ fn the_viewpoint_graph_reaches_every_floor() {
 
 proptest! {
     #[test]
-    fn no_navmesh_makes_a_walk_fall_over(at in 0usize..2400, with: [u8; 2], seed: u64) {
+    fn corrupt_navmeshes_never_panic_the_search(at in 0usize..2400, with: [u8; 2], seed: u64) {
         let mut bytes = paved(&two_storeys()).to_bytes();
         let at = at % bytes.len();
         for (byte, new) in bytes.iter_mut().skip(at).zip(with) {
@@ -240,7 +240,7 @@ proptest! {
     }
 }
 
-/// The file has one triangle, whose sides are kilometres long.
+/// The file has one triangle with sides of many kilometres.
 #[test]
 fn a_country_has_no_more_viewpoints_than_can_be_joined() {
     let far = 5e4;

@@ -1,4 +1,4 @@
-//! Makes a tile from polygons, as `dtCreateNavMeshData` does (Detour, `DetourNavMeshBuilder.cpp`).
+//! Makes a navmesh tile from polygons, as `dtCreateNavMeshData` does (Detour, `DetourNavMeshBuilder.cpp`).
 
 use super::{BvNode, DetailMesh, Grid, Header, MAX_CORNERS, NavMesh, NavMeshSettings, Poly, Tile};
 
@@ -23,7 +23,7 @@ pub(crate) struct Surface {
 pub(crate) struct Piece {
     /// Three to six vertices.
     pub(crate) corners: Vec<u16>,
-    /// For each corner, what lies behind the edge that begins there: 0 for nothing, or the index of a piece plus 1.
+    /// For each corner, the index of the piece behind the edge that begins there, plus 1; 0 if the ground ends there.
     pub(crate) neighbours: Vec<u16>,
     /// Vertices of the detail mesh, without the corners.
     pub(crate) detail_verts: Vec<[f32; 3]>,

@@ -1,4 +1,4 @@
-//! Reads little-endian numbers from bytes that may end anywhere.
+//! Reads little-endian numbers from bytes that may end anywhere. Errors name the byte and the item that was expected.
 
 use super::error::NavMeshError;
 

@@ -1,6 +1,6 @@
-//! Errors of reading a navmesh file.
+//! The errors of the navmesh reader.
 
-/// What is wrong with a `.navmesh` file, and at which byte.
+/// The fault of a `.navmesh` file, and the byte at which it is.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NavMeshError {
     /// The file ends too early.
@@ -10,7 +10,7 @@ pub enum NavMeshError {
     Short {
         /// Where the incomplete item begins.
         offset: usize,
-        /// What the reader expected there.
+        /// The item that the reader expected there.
         what: &'static str,
         /// Bytes that it needs.
         needed: u64,
@@ -22,11 +22,11 @@ pub enum NavMeshError {
     Value {
         /// Where the value is.
         offset: usize,
-        /// What the value means.
+        /// The name of the value.
         what: &'static str,
         /// The value.
         found: String,
-        /// What is allowed, and what to do if that is known.
+        /// The allowed values, and a remedy if one is known.
         expected: String,
     },
 }

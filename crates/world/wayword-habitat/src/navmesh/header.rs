@@ -1,4 +1,4 @@
-//! The first 100 bytes of a tile: `dtMeshHeader` (Detour, `DetourNavMesh.h`).
+//! The first 100 bytes of a tile, `dtMeshHeader` (Detour, `DetourNavMesh.h`): its place, its agent and its counts.
 
 use super::{cursor::Cursor, error::NavMeshError};
 

@@ -1,4 +1,4 @@
-//! Habitat's `.navmesh` files, byte for byte.
+//! Reads and writes Habitat's `.navmesh` files, byte for byte.
 //!
 //! Layout: `PathFinder::loadNavMesh` and `saveNavMesh` of habitat-sim 0.3.3 (version 2), and RecastDemo's
 //! `Sample::saveAll` (version 1, which has no settings); the tiles are Detour's, version 7, with 32 bit references. The
@@ -38,7 +38,7 @@ pub struct NavMesh {
     rest: Vec<u8>,
 }
 
-/// Where tiles lie and how many there may be.
+/// The position and size of the tiles, and how many tiles and polygons there may be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Grid {
     pub(crate) origin_m: [f32; 3],
@@ -79,7 +79,7 @@ impl NavMesh {
         Ok(Self { grid, settings, tiles, rest: cursor.rest().to_vec() })
     }
 
-    /// The file's bytes; if the navmesh was read from a file, the same bytes.
+    /// The file's bytes. If the navmesh was read from a file, they are the same as in that file.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::new();

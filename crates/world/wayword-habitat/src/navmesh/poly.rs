@@ -7,10 +7,10 @@ pub(crate) const MAX_CORNERS: usize = 6;
 /// This bit is set if an edge leads into another tile.
 const PORTAL: u16 = 0x8000;
 
-/// What lies behind an edge.
+/// The neighbour behind an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Behind {
-    /// Nothing: the walkable ground ends here.
+    /// None: the walkable ground ends here.
     Border,
     /// Another polygon of the tile, by its index.
     Polygon(usize),
@@ -23,7 +23,7 @@ pub(crate) enum Behind {
 pub(crate) struct Poly {
     pub(crate) first_link: u32,
     pub(crate) verts: [u16; MAX_CORNERS],
-    /// What lies behind the edge from corner i to the next.
+    /// The neighbour behind the edge from corner i to the next, as in the file.
     pub(crate) neis: [u16; MAX_CORNERS],
     pub(crate) flags: u16,
     pub(crate) vert_count: u8,
@@ -79,7 +79,7 @@ impl Poly {
         &self.verts[..usize::from(self.vert_count).min(MAX_CORNERS)]
     }
 
-    /// What lies behind the edge from corner `edge` to the next.
+    /// The neighbour behind the edge from corner `edge` to the next.
     pub(crate) fn behind(&self, edge: usize) -> Behind {
         match self.neis.get(edge).copied().unwrap_or(0) {
             0 => Behind::Border,

@@ -21,7 +21,7 @@ pub struct NavMeshSettings {
     pub region_min_size: f32,
     /// Regions with fewer cells than this squared are merged into others where possible.
     pub region_merge_size: f32,
-    /// Longest edge along the border, in metres as Habitat has it.
+    /// Longest edge along the border, metres (as in Habitat; Recast has voxels).
     pub edge_max_len: f32,
     /// How far a simplified border may lie off the true one, cells.
     pub edge_max_error: f32,

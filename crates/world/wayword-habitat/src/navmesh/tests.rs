@@ -1,3 +1,5 @@
+//! Tests of the reader and the writer on a navmesh of two polygons, intact and damaged.
+
 use super::build::{Piece, Surface, single_tile};
 use super::*;
 use proptest::prelude::*;
@@ -20,14 +22,14 @@ fn two_squares() -> NavMesh {
     };
     let surface = Surface { verts, pieces: vec![flat, raised], low_m: [0.0; 3], high_m: [2.0, 0.1, 1.0] };
     let mut mesh = single_tile(&surface, NavMeshSettings::default());
-    // Arbitrary bytes: a writer leaves here what was in its memory.
+    // Arbitrary bytes: a writer leaves the previous contents of its memory here.
     mesh.tiles[0].links = (0..12 * 8).map(|byte| byte as u8 ^ 0xa5).collect();
     mesh.tiles[0].detail_meshes[1].padding = [7, 9];
     mesh
 }
 
 #[test]
-fn what_is_read_is_written_back_the_same_garbage_included() {
+fn to_bytes_returns_the_bytes_that_were_read() {
     let mut bytes = two_squares().to_bytes();
     bytes.extend_from_slice(b"and more");
     let mesh = NavMesh::from_bytes(&bytes).unwrap();
@@ -46,7 +48,7 @@ fn recasts_own_files_have_no_settings() {
 }
 
 #[test]
-fn the_tree_of_boxes_leaps_over_what_it_does_not_meet() {
+fn box_tree_nodes_hold_the_number_of_nodes_to_skip() {
     let mesh = two_squares();
     let nodes = &mesh.tiles[0].bv_nodes;
     assert_eq!(nodes.iter().map(|node| node.index).collect::<Vec<_>>(), [-3, 0, 1, 0]);
@@ -54,7 +56,7 @@ fn the_tree_of_boxes_leaps_over_what_it_does_not_meet() {
 }
 
 #[test]
-fn errors_say_which_byte_and_what_was_expected() {
+fn navmesh_errors_name_the_byte_and_the_expected_value() {
     let good = two_squares().to_bytes();
     let broken = |at: usize, with: &[u8]| {
         let mut bytes = good.clone();
@@ -100,7 +102,7 @@ fn holds(pairs: &[(String, &str)]) {
 
 proptest! {
     #[test]
-    fn no_bytes_make_the_reader_fall_over(at in 0usize..600, with: [u8; 4], cut in 0usize..600) {
+    fn navmesh_reader_survives_any_bytes(at in 0usize..600, with: [u8; 4], cut in 0usize..600) {
         let mut bytes = two_squares().to_bytes();
         for (byte, new) in bytes.iter_mut().skip(at).zip(with) {
             *byte = new;

@@ -13,7 +13,7 @@ pub(crate) struct DetailMesh {
     pub(crate) padding: [u8; 2],
 }
 
-/// A box of the tree (`dtBVNode`). Detour uses it to find polygons; this program only keeps it, and makes it, for
+/// A box of the tree (`dtBVNode`). Detour uses it to find polygons. This program only preserves it, or makes it for
 /// Detour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BvNode {

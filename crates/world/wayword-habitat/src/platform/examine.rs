@@ -1,4 +1,4 @@
-//! What the files of a scene offer, before a run uses them.
+//! Examines the files of a scene before a run uses them.
 
 use super::{
     files::SceneFiles,
@@ -12,7 +12,7 @@ use crate::{
 };
 use wayword_core::{Condition, Fit, GraphSize, Lack, PlatformError, RoomNames, SceneId};
 
-/// Reads a scene's files without decoding its pictures, and says what they offer and what is wrong with them.
+/// Reads a scene's files without decoding its pictures, and reports what they offer and which faults they have.
 pub(super) fn examine(id: &SceneId, files: &SceneFiles) -> Result<Condition, PlatformError> {
     let mut condition = Condition {
         scene: id.clone(),
@@ -36,7 +36,7 @@ pub(super) fn examine(id: &SceneId, files: &SceneFiles) -> Result<Condition, Pla
     Ok(condition)
 }
 
-/// Fills in what is known, up to the first file that cannot be used.
+/// Fills in the findings, up to the first file that cannot be used.
 fn fill(condition: &mut Condition, files: &SceneFiles) -> Result<(), PlatformError> {
     let stage = Stage::of(&files.stage)?;
     let model = Model::shape(&stage.asset, stage.habitat_from_asset)?;

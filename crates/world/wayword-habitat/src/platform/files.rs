@@ -22,7 +22,7 @@ const HINT: &str = "give a scene's .glb file, or a folder of scenes laid out as 
 pub(super) struct SceneFiles {
     /// The stage configuration, GLB or glTF.
     pub(super) stage: PathBuf,
-    /// The viewpoint graph that it is walked along; `None` where its ground is walked on.
+    /// The viewpoint graph for its paths; `None` if paths lead over its ground.
     pub(super) graph: Option<PathBuf>,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn scenes(place: &Path) -> Result<BTreeMap<SceneId, SceneFiles>, File
     Ok(scenes)
 }
 
-/// How well a file serves as a stage; 0 is the best, and `None` means that it is not a stage.
+/// How well a file serves as a stage: 0 is the best, and `None` means that it is no stage.
 fn rank(name: &str) -> Option<u8> {
     let endings = [".stage_config.json", ".basis.glb", ".glb", ".gltf"];
     let rank = endings.iter().position(|ending| name.ends_with(ending))? as u8;
@@ -98,12 +98,12 @@ impl SceneFiles {
         stage.navmesh.iter().chain(&own).find(|file| file.is_file()).cloned()
     }
 
-    /// The file that says where one can walk: the viewpoint graph, or else the navmesh.
+    /// The file that shows where one can walk: the viewpoint graph, or else the navmesh.
     fn ways(&self, stage: &Stage) -> Option<PathBuf> {
         self.graph.clone().or_else(|| self.navmesh(stage))
     }
 
-    /// Every file that the scene is read from, including those that its GLB or glTF files name, sorted.
+    /// Every file that the scene is read from, sorted. It includes the files to which its GLB or glTF files refer.
     pub(super) fn all(&self, stage: &Stage) -> Vec<PathBuf> {
         let SemanticFiles { painted, numbered } = self.semantics(stage);
         let pairs = painted.into_iter().chain(numbered).flat_map(|(mesh, names)| [mesh, names]);
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scenes_are_found_with_what_belongs_to_them() {
+    fn find_scenes_finds_the_files_of_each_scene() {
         let folder = tempfile::tempdir().unwrap();
         for file in [
             "hm3d/00800-a/a.basis.glb",
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_scene_names_beside_it_belongs_to_it() {
+    fn all_files_include_those_that_a_gltf_names() {
         let folder = tempfile::tempdir().unwrap();
         let document = serde_json::json!({
             "buffers": [{ "uri": "yard%20walls.bin" }, { "uri": "data:application/octet-stream;base64,AAAA" }, {}],

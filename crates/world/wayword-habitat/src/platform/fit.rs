@@ -1,42 +1,42 @@
-//! Whether a viewpoint graph lies in its scene: eyes stand over a floor, and no edge crosses a wall. A graph in another
-//! frame is told, with what to do about it.
+//! Checks whether a viewpoint graph lies in its scene: eyes are over a floor, and edges do not cross walls. If a graph
+//! fits in other axes (z and y swapped, mirrored, in centimetres), the error names the mistake and how to correct it.
 
 use crate::columns::Columns;
 use wayword_core::{DVec3, Fit};
 use wayword_world::connectivity::{Connectivity, Viewpoint};
 
-/// How far below an eye its floor lies, metres: from a robot's camera to one on a tall stand.
+/// Distance from an eye down to its floor, metres: from a robot's camera to one on a tall stand.
 const FLOOR_M: std::ops::RangeInclusive<f64> = 0.3..=2.5;
-/// Least share of viewpoints that stand over a floor: scans have holes.
+/// Least share of viewpoints over a floor: scans have holes.
 const LEAST_OVER_FLOOR: f64 = 0.9;
 /// Greatest share of edges that cross a wall: a door may have been closed when the building was scanned.
 const MOST_THROUGH_WALLS: f64 = 0.02;
-/// A wall stands at the height of the eyes and this far below; a lamp or a table does not. Metres.
+/// An edge is tested at the height of the eyes and this far below; only a wall blocks both, a lamp or a table does not. Metres.
 const LOWER_M: f64 = 0.4;
-/// Where viewpoints lie on the floor, it is this near to them, metres: a navmesh is a little above or below.
+/// Greatest distance from the floor of viewpoints that should lie on it, metres: a navmesh is a little above or below.
 const ON_FLOOR_M: f64 = 0.3;
 /// Most edges that are examined, spread over the graph.
 const MOST_EDGES: usize = 20_000;
-/// Triangles that may be looked at for one graph: about a second.
+/// Most tests of a triangle for one graph: about a second.
 const BUDGET: u64 = 200_000_000;
 
 const BELONGS: &str =
     "give this scene's own graph, with poses in metres and in the frame of the scan, z up, as in Matterport3D";
 
-/// A frame that viewpoints are written in by mistake.
+/// Axes, or a height, in which viewpoints are written by mistake.
 struct Frame {
-    /// What is wrong with the viewpoints.
+    /// The mistake, as the end of a sentence about the viewpoints.
     told: &'static str,
     hint: &'static str,
-    /// Where a viewpoint really is; if it lies on the floor, where its floor is.
+    /// The true place of a viewpoint, or of its floor if it lies on the floor.
     place: fn(DVec3) -> DVec3,
     lies_on_floor: bool,
 }
 
-/// The frame of the scan.
+/// The right axes: those of the scan.
 const RIGHT: Frame = Frame { told: "fit", hint: "", place: |at| at, lies_on_floor: false };
 
-/// In the order of how usual they are.
+/// The known mistakes, the most usual first.
 const FRAMES: [Frame; 11] = [
     Frame {
         told: "have y up, as in Habitat",
@@ -110,12 +110,12 @@ const FRAMES: [Frame; 11] = [
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Misfit {
     pub(super) fit: Fit,
-    /// What is wrong with it.
+    /// The fault of the graph, as a sentence.
     pub(super) reason: String,
     pub(super) hint: &'static str,
 }
 
-/// How a graph lies in its scene. `columns` hold the scene's walls too.
+/// Judges how a graph lies in its scene. `columns` must include the scene's walls.
 pub(super) fn judge(columns: &Columns, graph: &Connectivity) -> Result<Fit, Misfit> {
     let fit = of(columns, graph, &RIGHT);
     if is_plausible(&fit) {
@@ -128,7 +128,7 @@ pub(super) fn judge(columns: &Columns, graph: &Connectivity) -> Result<Fit, Misf
     }
     let others = FRAMES.iter().map(|frame| (of(columns, graph, frame), frame));
     let fitting = others.filter(|(fit, _)| is_plausible(fit));
-    // Of two that fit equally well, the more usual one.
+    // Of several that fit equally well, the most usual one.
     match fitting.min_by_key(|(fit, _)| (fit.through_walls, fit.viewpoints - fit.over_floor)) {
         Some((_, frame)) => Err(refused(frame.told, frame.hint)),
         None => {
@@ -149,7 +149,7 @@ fn is_plausible(fit: &Fit) -> bool {
         && fit.through_walls as f64 <= MOST_THROUGH_WALLS * edges
 }
 
-/// The figures of a graph that is written in a frame.
+/// The figures of a graph if its viewpoints are read in these axes.
 fn of(columns: &Columns, graph: &Connectivity, frame: &Frame) -> Fit {
     let eye = |at: &Viewpoint| {
         let place = (frame.place)(at.position);
@@ -165,7 +165,7 @@ fn of(columns: &Columns, graph: &Connectivity, frame: &Frame) -> Fit {
     pairs.dedup();
     let (mut budget, mut fit) = (BUDGET, Fit { viewpoints: eyes.len(), over_floor: 0, edges: 0, through_walls: 0 });
     fit.over_floor = eyes.iter().zip(&graph.viewpoints).filter(stands).count();
-    // If the budget is spent before the end, the edges that were examined have to be spread over the graph.
+    // The budget may run out early, so the edges are taken in an order that is spread over the graph.
     for (a, b) in spread(&pairs) {
         if budget == 0 {
             break;
@@ -180,7 +180,7 @@ fn of(columns: &Columns, graph: &Connectivity, frame: &Frame) -> Fit {
 
 /// At most [`MOST_EDGES`] of the pairs, in an order that jumps through all of them.
 fn spread(pairs: &[(usize, usize)]) -> impl Iterator<Item = (usize, usize)> {
-    /// Number of rounds, each of which goes through the whole list.
+    /// Number of rounds; each of them goes through the whole list.
     const ROUNDS: usize = 16;
     let step = pairs.len().div_ceil(MOST_EDGES).max(1);
     (0..ROUNDS).flat_map(move |round| pairs.iter().copied().skip(round * step).step_by(ROUNDS * step))
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn each_wrong_frame_is_named_with_what_to_do() {
+    fn judge_names_each_wrong_frame_with_a_hint() {
         type Wrong = (&'static str, fn(DVec3) -> DVec3, &'static str);
         let wrongs: [Wrong; 11] = [
             ("have y up, as in Habitat:", |p| DVec3::new(p.x, p.z, -p.y), "pose[7] becomes -pose[11]"),
@@ -281,7 +281,7 @@ mod tests {
         let misfit = judge(&flat(), &graph).unwrap_err();
         assert_eq!((misfit.fit.edges, misfit.fit.through_walls), (7, 1));
         assert!(misfit.reason.contains("do not lie in this scene"), "{misfit:?}");
-        // Among a hundred edges in the open, one is let pass.
+        // One among a hundred edges in the open is tolerated.
         let copies = 20;
         for copy in 1..=copies {
             let offset = graph.viewpoints.len();

@@ -1,4 +1,4 @@
-//! The viewpoint graph of a scene from a file in Matterport's format.
+//! Reads the viewpoint graph of a scene from a file in Matterport's format.
 
 use super::fit;
 use crate::{columns::Columns, fault::FileError, scene::Model};
@@ -7,9 +7,9 @@ use wayword_core::{DVec3, PlatformError, ViewpointGraph};
 use wayword_world::connectivity::{self, Connectivity};
 
 const HINT: &str = "get the graph again from where it was published, or take it out of --connectivity";
-/// How far beside an edge a view may be taken, metres.
+/// Greatest distance from an edge at which a view may be taken, metres.
 const BESIDE_M: f64 = 0.5;
-/// How far above or below an edge: a robot's camera is lower than a person's eye. Metres.
+/// Greatest height above or below an edge at which a view may be taken, metres: a robot's camera is lower than a person's eye.
 const ABOVE_M: f64 = 2.0;
 
 /// Reads a graph's file.
@@ -17,7 +17,7 @@ pub(super) fn connectivity(file: &Path) -> Result<Connectivity, PlatformError> {
     connectivity::read(file, HINT)?.ok_or_else(|| FileError::new(file, "there is no such file", HINT).into())
 }
 
-/// A graph as it is walked along. With `model`, a graph that does not lie in it is refused.
+/// Reads the graph of a scene. If `model` is given, a graph that does not lie in it is refused.
 pub(super) fn read(file: &Path, model: Option<&Model>) -> Result<ViewpointGraph, PlatformError> {
     let connectivity = connectivity(file)?;
     if let Some(model) = model {
@@ -27,12 +27,12 @@ pub(super) fn read(file: &Path, model: Option<&Model>) -> Result<ViewpointGraph,
     build(file, &connectivity).map_err(PlatformError::from)
 }
 
-/// The graph of a file that has been read.
+/// Makes the viewpoint graph from the contents of its file.
 pub(super) fn build(file: &Path, connectivity: &Connectivity) -> Result<ViewpointGraph, FileError> {
     connectivity.graph(|_| None).map_err(|error| FileError::new(file, error.to_string(), HINT))
 }
 
-/// Whether a place lies at a viewpoint or on the way along an edge, or little beside.
+/// Whether a place is at a viewpoint or on an edge, or near enough to one.
 pub(super) fn passes(graph: &ViewpointGraph, eye: DVec3) -> bool {
     let place = |viewpoint| graph.position(viewpoint);
     let near = |on_way: DVec3| {

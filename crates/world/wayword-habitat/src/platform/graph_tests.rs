@@ -1,4 +1,4 @@
-//! Tests of scenes that are walked along a graph: a yard that they write themselves, without stage configuration or
+//! Tests of scenes with a viewpoint graph from a file: a yard that is written here, without stage configuration or
 //! navmesh.
 
 use super::{tests::folder, *};

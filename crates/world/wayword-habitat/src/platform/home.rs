@@ -1,4 +1,4 @@
-//! One scene, read and prepared.
+//! A scene of the platform in memory, with its model, its ground and its labels.
 
 use super::{HabitatOptions, files::SceneFiles, graph, walkable::Walkable};
 use crate::{
@@ -19,22 +19,22 @@ use wayword_world::seen_from;
 
 const DRAW_HINT: &str = "export the scene again as GLB";
 
-/// A scene, and where one can walk in it.
+/// A scene, and the ground or the graph for its paths.
 pub(super) struct Home {
     pub(super) id: SceneId,
     scene: Scene,
-    /// Its ground; `None` where it is walked along a graph from a file.
+    /// Its ground; `None` if its graph comes from a file.
     pub(super) walkable: Option<Walkable>,
     pub(super) graph: Arc<ViewpointGraph>,
     /// Whether views may be taken off the graph from a file.
     off_graph: bool,
     pub(super) semantics: Option<Semantics>,
-    /// The viewpoints from which each object is seen; computed when first needed.
+    /// The viewpoints that see each object; computed when first needed.
     seen_from: OnceLock<BTreeMap<ObjectId, BTreeSet<ViewpointId>>>,
 }
 
 impl Home {
-    /// Reads a scene. `fits` says that its graph is known to lie in it.
+    /// Reads a scene. With `fits` the graph from its file is known to lie in it and is not checked again.
     pub(super) fn build(
         id: &SceneId,
         files: &SceneFiles,
@@ -65,12 +65,12 @@ impl Home {
         self.walkable.as_ref().map(Walkable::islands).unwrap_or_default()
     }
 
-    /// The shortest way over its ground between two eyes; `None` where there is none, or the ground is not known.
+    /// The shortest way over its ground between two eyes; `None` if there is none, or the ground is not known.
     pub(super) fn way(&self, from: DVec3, to: DVec3) -> Option<Way> {
         self.walkable.as_ref()?.way(from, to)
     }
 
-    /// What is seen from an eye: a picture if `pictured`, and labels if the scene has semantics.
+    /// The view from an eye: with a picture if `pictured`, and with labels if the scene has semantics.
     pub(super) fn view(&self, eye: DVec3, gaze: Gaze, size: [u32; 2], pictured: bool) -> Result<View, PlatformError> {
         let camera = Camera::level(eye, gaze, size);
         let image = pictured.then(|| self.image(&camera)).transpose()?;
@@ -85,7 +85,7 @@ impl Home {
         Ok(View::new(Pose::level(eye, gaze.heading), gaze.horizontal_fov_rad, image, truth))
     }
 
-    /// How far away is what is seen from an eye.
+    /// The depth picture from an eye.
     pub(super) fn depth(&self, eye: DVec3, gaze: Gaze, size: [u32; 2]) -> Result<Depth, PlatformError> {
         let picture = render_ids(&self.scene, &Camera::level(eye, gaze, size)).map_err(|error| self.refused(&error))?;
         Depth::new(picture.width, picture.height, picture.depth_m).map_err(|error| self.refused(&error))
@@ -102,7 +102,7 @@ impl Home {
         image.map(Arc::new).map_err(|error| self.refused(&error))
     }
 
-    /// The error that something in this scene cannot be drawn.
+    /// The error for a picture of this scene that cannot be drawn.
     fn refused(&self, error: &dyn std::error::Error) -> PlatformError {
         PlatformError::NotDrawn { scene: self.id.clone(), reason: error.to_string() }
     }
@@ -116,7 +116,7 @@ impl Home {
         Ok(labels.map_err(|error| self.refused(&error))?.into_iter().flatten().collect())
     }
 
-    /// The viewpoints from which each object is seen.
+    /// The viewpoints that see each object.
     pub(super) fn seen_from(&self) -> Result<&BTreeMap<ObjectId, BTreeSet<ViewpointId>>, PlatformError> {
         if let Some(seen_from) = self.seen_from.get() {
             return Ok(seen_from);
@@ -125,7 +125,7 @@ impl Home {
         Ok(self.seen_from.get_or_init(|| seen))
     }
 
-    /// Returns an error for a frame that is not above the ground, or not on the way along the graph.
+    /// Returns an error for a frame that is not above the ground, or not near the graph.
     pub(super) fn check(&self, frame: &Frame) -> Result<(), PlatformError> {
         let eye = frame.pose.position;
         let is_there = match &self.walkable {

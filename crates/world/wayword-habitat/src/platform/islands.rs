@@ -1,8 +1,8 @@
 //! Chooses the island of a navmesh that paths stay on.
 //!
-//! Recast finds ground wherever there is room above it, so the top of a ceiling is ground too. Because no walls or
-//! furniture stand on it, it is often the largest island. It is recognised by two things: nothing is above it, and
-//! there are rooms below.
+//! Recast finds ground wherever there is room above it, so the top of a ceiling is ground too. Often it is even the
+//! largest island, because no walls or furniture are on it. Two facts give it away: there is nothing above it, and there
+//! are rooms below.
 
 use crate::{
     columns::{Columns, Over},
@@ -16,19 +16,19 @@ const PLACES: usize = 400;
 const MOST: usize = 64;
 /// Least area of an island that is examined, square metres.
 const LEAST_M2: f64 = 1.0;
-/// Paths can stay on an island if this share of it is under a ceiling, or under the sky on firm ground.
+/// Least share of an island that is under a ceiling, or under the sky on firm ground, for paths to stay on it.
 const FIT: f64 = 1.0 / 3.0;
-/// An island is indoors if this share of it is under a ceiling.
+/// Least share of an indoor island that is under a ceiling.
 const INDOORS: f64 = 0.25;
 /// Indoor islands come first only if their rooms have at least this share of the open ground's area: a shelter in a
 /// field is not preferred to the field.
 const ROOMS: f64 = 0.1;
-/// If another island has this share of the chosen one's area, the user may have meant that one.
+/// If another island has this share of the chosen one's area, the user may prefer that one.
 const RIVAL: f64 = 0.5;
 /// Most islands that an error or warning lists.
 const NAMED: usize = 6;
 
-/// What is above the places of an island, as shares of its area.
+/// The cover over the places of an island, as shares of its area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Survey {
     pub(super) number: usize,
@@ -44,7 +44,7 @@ pub(super) struct Survey {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Choice {
     pub(super) number: usize,
-    /// Whether the user may have meant another one.
+    /// Whether the user may prefer another one.
     pub(super) is_doubtful: bool,
 }
 
@@ -73,8 +73,8 @@ fn of(ground: &Ground, columns: &Columns, number: usize, area_m2: f64) -> Survey
     }
 }
 
-/// The island that paths stay on: of the indoor islands, the one with the most area under a ceiling; an island under
-/// the open sky only if the scene has almost no rooms. `None` if no island is a place to walk on.
+/// Chooses the island that paths stay on: of the indoor islands, the one with the most area under a ceiling; an island
+/// under the open sky only if the scene has almost no rooms. `None` if no island is a place to walk on.
 pub(super) fn choose(surveys: &[Survey]) -> Option<Choice> {
     let fit = || surveys.iter().filter(|survey| survey.ceiling + survey.sky >= FIT);
     let best = |most: fn(&Survey) -> f64, of: Vec<&Survey>| {
@@ -103,7 +103,7 @@ impl Survey {
         self.area_m2 * self.sky
     }
 
-    /// The island for display; `walked` is the number of the one that paths stay on.
+    /// The island for display. `walked` is the number of the island that paths stay on.
     pub(super) fn told(&self, walked: Option<usize>) -> Island {
         let covers = [
             (self.ceiling, Cover::Ceiling),
@@ -123,7 +123,7 @@ impl Survey {
     }
 }
 
-/// The islands as text, the largest first.
+/// The islands in words, the largest first.
 pub(super) fn listed(surveys: &[Survey]) -> String {
     if surveys.is_empty() {
         return format!("it has no island of at least {LEAST_M2} m2");
@@ -172,13 +172,13 @@ mod tests {
     }
 
     #[test]
-    fn where_nobody_can_stand_upright_nothing_is_chosen() {
+    fn no_island_is_chosen_without_headroom() {
         assert_eq!(chosen(&[island(0, 50.0, [0.1, 0.0, 0.0])]), None);
         assert_eq!(chosen(&[]), None);
     }
 
     #[test]
-    fn islands_are_told_with_area_height_and_what_is_over_them() {
+    fn listed_islands_show_area_height_and_cover() {
         let told = listed(&[island(0, 67.04, [0.0, 0.1, 0.9]), island(1, 43.5, [1.0, 0.0, 0.0])]);
         assert_eq!(
             told,

@@ -1,4 +1,4 @@
-//! Habitat's scenes as a platform.
+//! Habitat's scenes as a [`Platform`].
 
 mod examine;
 mod files;
@@ -42,9 +42,9 @@ pub struct HabitatPlatform {
     hear: Hear,
     pairs: Pairs,
     ready: Recent<SceneId, Home>,
-    /// What was found of scenes that were examined, so that each is examined once.
+    /// The condition of each scene that was examined, so that none is examined twice.
     examined: Mutex<BTreeMap<SceneId, Condition>>,
-    /// Scenes for which a warning was already given, so that each is given once.
+    /// Scenes for which a warning was already given.
     told: Mutex<BTreeSet<SceneId>>,
 }
 
@@ -61,10 +61,10 @@ pub struct HabitatOptions {
     pub navmesh: Option<PathBuf>,
     /// The island that paths stay on; 0 is the largest. If `None`, the program chooses one for each scene.
     pub island: Option<usize>,
-    /// A folder of viewpoint graphs in Matterport's format (`SCENE_connectivity.json`). Scenes are then walked along their
-    /// graphs, no navmesh is read or baked, and scenes without a graph are left out.
+    /// A folder of viewpoint graphs in Matterport's format (`SCENE_connectivity.json`). Paths then follow these graphs, no
+    /// navmesh is read or baked, and scenes without a graph are left out.
     pub connectivity: Option<PathBuf>,
-    /// Whether views may be taken off these graphs too, as of an agent that walks over the navmesh.
+    /// Whether views may be taken off these graphs too, as for an agent that walks over the navmesh.
     pub off_graph: bool,
 }
 
@@ -105,7 +105,7 @@ impl HabitatPlatform {
     /// The navmesh of a scene, from its file or baked. [`NavMesh::to_bytes`] returns a file that Habitat can read.
     ///
     /// # Errors
-    /// If there is no such scene, or its files cannot be read.
+    /// If the scene is unknown, or its files cannot be read.
     pub fn navmesh(&self, scene: &SceneId) -> Result<NavMesh, PlatformError> {
         if let Some(walkable) = &self.home(scene)?.walkable {
             return Ok(walkable.navmesh.clone());
@@ -129,13 +129,13 @@ impl HabitatPlatform {
         })
     }
 
-    /// A scene's id and files, by its id or another name of it.
+    /// A scene's id and files, by its id or by another name that it has.
     fn files_of(&self, name: &SceneId) -> Result<(&SceneId, &SceneFiles), PlatformError> {
         let id = self.pairs.others.get(name).unwrap_or(name);
         self.pairs.scenes.get_key_value(id).ok_or_else(|| self.unknown(name))
     }
 
-    /// What was found of a scene, if it was examined.
+    /// The condition of a scene, if it was examined.
     fn known(&self, scene: &SceneId) -> Option<Condition> {
         self.examined.lock().unwrap_or_else(PoisonError::into_inner).get(scene).cloned()
     }
@@ -187,7 +187,7 @@ impl Platform for HabitatPlatform {
                 found
             }
         };
-        // It is told by the name that was asked for.
+        // The caller may have used another name of the scene, and gets that name back.
         Ok(Some(Condition { scene: scene.clone(), ..found }))
     }
 
@@ -232,7 +232,7 @@ impl Platform for HabitatPlatform {
         Ok(Some(home.seen_from()?.get(object).cloned().unwrap_or_default()))
     }
 
-    /// The way over the navmesh, as Habitat measures it; `None` where there is a graph instead.
+    /// The way over the navmesh, as Habitat measures it; `None` if the scene has a graph from a file instead.
     fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
         Ok(self.home(scene)?.way(from.pose.position, to.pose.position))
     }

@@ -1,4 +1,4 @@
-//! Which viewpoint graph belongs to which scene: `SCENE_connectivity.json` in a folder.
+//! Finds the viewpoint graph of each scene: the file `SCENE_connectivity.json` in a folder.
 
 use super::files::{MAX_ENTRIES, SceneFiles};
 use crate::{fault::FileError, scene::stem};
@@ -9,7 +9,7 @@ use std::{
 use wayword_core::{Lack, SceneId};
 use wayword_world::connectivity::ENDING;
 
-/// Graphs without a scene that are named.
+/// Most graphs without a scene that a warning names.
 const NAMED: usize = 3;
 const HINT: &str = "give --connectivity the folder with the files SCENE_connectivity.json";
 
@@ -17,9 +17,9 @@ const HINT: &str = "give --connectivity the folder with the files SCENE_connecti
 #[derive(Debug, Default)]
 pub(super) struct Pairs {
     pub(super) scenes: BTreeMap<SceneId, SceneFiles>,
-    /// What is in one of the two folders and cannot be used.
+    /// Scenes and graphs that cannot be used, with the reason.
     pub(super) unpaired: BTreeMap<SceneId, Lack>,
-    /// Graphs for which there is no scene, by name. A folder of them usually has many more than there are scenes.
+    /// Names of graphs without a scene. A folder of graphs usually has many more of them than there are scenes.
     idle: Vec<String>,
     /// Other names of scenes, which episodes may use.
     pub(super) others: BTreeMap<SceneId, SceneId>,
@@ -31,7 +31,7 @@ impl Pairs {
         Self { scenes, ..Self::default() }
     }
 
-    /// Says in one line which graphs have no scene, if there are any.
+    /// A line that names the graphs without a scene; `None` if every graph has one.
     pub(super) fn idle(&self) -> Option<String> {
         let named = self.idle.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
         let more = if self.idle.len() > NAMED { " ..." } else { "" };
@@ -43,7 +43,7 @@ impl Pairs {
 /// Pairs scenes with the graphs of a folder.
 ///
 /// HM3D's scenes are numbered: the folder `00800-TEEsavR23oF` holds `TEEsavR23oF.basis.glb`, and graphs have either
-/// name. A scene is called by its number where the folder or the graph tells it, because official splits go by it.
+/// name. The scene id has the number if the folder or the graph shows it, because official splits use it.
 pub(super) fn pair(scenes: BTreeMap<SceneId, SceneFiles>, folder: &Path) -> Result<Pairs, FileError> {
     let graphs = graphs(folder)?;
     let mut taken: BTreeMap<PathBuf, SceneId> = BTreeMap::new();
@@ -92,7 +92,7 @@ fn graphs(folder: &Path) -> Result<BTreeMap<String, PathBuf>, FileError> {
     Ok(graphs)
 }
 
-/// A scene's own name, and the numbered one if its folder has that.
+/// A scene's own name, and its numbered name if its folder has one.
 fn names(stage: &Path) -> (String, Option<String>) {
     let text = |part: Option<&std::ffi::OsStr>| part.and_then(|part| part.to_str()).unwrap_or_default().to_owned();
     let stem = stem(&text(stage.file_name())).to_owned();
@@ -101,7 +101,7 @@ fn names(stage: &Path) -> (String, Option<String>) {
     (stem, numbered)
 }
 
-/// Whether a name is that of a scene of HM3D with its number before it.
+/// Whether a name is a stem with the number of an HM3D scene before it.
 fn number_of(name: &str, stem: &str) -> bool {
     let number = name.strip_suffix(stem).and_then(|number| number.strip_suffix('-'));
     number.is_some_and(|number| number.len() == 5 && number.bytes().all(|byte| byte.is_ascii_digit()))
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_partner_is_named_with_what_to_do() {
+    fn scenes_and_graphs_without_partner_are_named_with_a_hint() {
         let pairs = paired(&["s/a.glb", "s/b.glb", "s/again/a.glb", "g/a_connectivity.json", "g/c_connectivity.json"]);
         assert_eq!(texts(&pairs.scenes), ["a"]);
         let told = |name: &str| &pairs.unpaired[&SceneId::new(name).unwrap()];

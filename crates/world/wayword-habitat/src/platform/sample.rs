@@ -9,7 +9,7 @@ use wayword_world::{
     wander::{Wander, wander},
 };
 
-/// A random path whose length is within `request`: over the ground, or along the graph where that is from a file.
+/// A random path with a length within `request`: over the ground, or along the graph if that comes from a file.
 pub(super) fn path(home: &Home, request: &PathRequest, seed: u64, interval_m: f64) -> Result<Path, PlatformError> {
     match &home.walkable {
         Some(walkable) => over_ground(home, walkable, request, seed, interval_m),
@@ -68,8 +68,8 @@ impl<R: Rng> Wander for Walker<'_, R> {
     }
 }
 
-/// The request in words, with the area of the ground: a scene in other units, or one that lies on its side, has almost
-/// none.
+/// The request in words, with the area of the ground: almost none is a sign of wrong units, or of a scene that lies on
+/// its side.
 fn refused(walkable: &Walkable, request: &PathRequest) -> String {
     let length_m = &request.length_m;
     let ground_m2 = walkable.ground.islands_m2().nth(walkable.ground.main()).unwrap_or_default();

@@ -1,5 +1,4 @@
-//! Tests of the platform on a scene that they write themselves: a floor of 8 x 8 m with a red box on it, without a
-//! navmesh.
+//! Tests of the platform on a scene that is written here: a floor of 8 x 8 m with a red box on it, without a navmesh.
 
 use super::*;
 use crate::scene::tests::glb;
@@ -81,13 +80,13 @@ fn platform(has_labels: bool) -> (HabitatPlatform, SceneId) {
     )
     .unwrap();
     let scene = platform.scenes().unwrap().remove(0);
-    // Read the scene while the folder exists; the platform keeps it in memory.
+    // Reads the scene while the folder exists; the platform keeps it in memory.
     platform.graph(&scene).unwrap();
     (platform, scene)
 }
 
 #[test]
-fn paths_over_baked_ground_lead_around_what_stands_there() {
+fn paths_over_baked_ground_lead_around_the_box() {
     let (platform, scene) = platform(true);
     let request = PathRequest { length_m: 4.0..=9.0, ..PathRequest::default() };
     for seed in 0..20 {
@@ -131,7 +130,7 @@ fn views_show_the_scene_and_label_it() {
 }
 
 #[test]
-fn without_semantics_nothing_is_known() {
+fn a_scene_without_semantics_has_no_labels_and_targets() {
     let (platform, scene) = platform(false);
     assert_eq!(platform.visible_from(&scene, &ObjectId::new("2").unwrap()).unwrap(), None);
     let path = platform.sample_path(&scene, &PathRequest::default(), 3).unwrap();
@@ -142,7 +141,7 @@ fn without_semantics_nothing_is_known() {
 }
 
 #[test]
-fn a_walk_that_finds_no_room_is_told_how_much_ground_there_is() {
+fn sample_path_error_reports_the_area_of_the_ground() {
     let (platform, scene) = platform(false);
     let request = PathRequest { length_m: 40.0..=50.0, ..PathRequest::default() };
     let message = platform.sample_path(&scene, &request, 1).unwrap_err().to_string();
@@ -152,7 +151,7 @@ fn a_walk_that_finds_no_room_is_told_how_much_ground_there_is() {
     assert!(message.contains("units_to_meters, up and front"), "{message}");
 }
 
-/// A floor of 8 x 8 m, and a ceiling over it with a larger top, so that Recast finds the most ground there.
+/// A floor of 8 x 8 m, and a ceiling with a larger top over it: Recast finds the most ground on that top.
 fn flat() -> [Vec<[f32; 3]>; 2] {
     let (mut floor, mut slab) = (Vec::new(), Vec::new());
     quad(&mut floor, [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [8.0, 8.0, 0.0], [0.0, 8.0, 0.0]]);

@@ -1,4 +1,4 @@
-//! The ground of a scene that is walked on: its navmesh, and the island that paths stay on.
+//! The ground of a scene for paths: its navmesh, and the island that paths stay on.
 
 use super::{
     HabitatOptions,
@@ -26,7 +26,7 @@ pub(super) struct Walkable {
     pub(super) ground: Ground,
     columns: Columns,
     surveys: Vec<Survey>,
-    /// Whether the user may mean another island than the chosen one.
+    /// Whether the user may prefer another island to the chosen one.
     is_doubtful: bool,
 }
 
@@ -62,7 +62,7 @@ impl Walkable {
         Ok(Self { navmesh, ground: ground.keeping_to(number), columns, surveys, is_doubtful })
     }
 
-    /// The warning to print if the user may mean another island than the chosen one.
+    /// The warning to print if the user may prefer another island to the chosen one.
     pub(super) fn doubt(&self) -> Option<String> {
         self.is_doubtful.then(|| {
             let listed = islands::listed(&self.surveys);
@@ -100,7 +100,7 @@ impl Walkable {
     }
 }
 
-/// The island that paths stay on: the one that the user chose, else the one on which people would walk.
+/// The island that paths stay on: the user's choice, else the one on which people would walk.
 fn island(
     ground: &Ground,
     surveys: &[Survey],

@@ -1,4 +1,4 @@
-//! Reads the numbers of a glTF file: accessors (glTF 2.0, section 3.6.2).
+//! Reads the numbers in a glTF file through its accessors (glTF 2.0, section 3.6.2).
 
 use super::asset::Asset;
 use gltf::json::{

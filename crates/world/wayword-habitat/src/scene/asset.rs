@@ -54,8 +54,8 @@ impl Asset {
         Ok(Self { root, buffers, beside })
     }
 
-    /// Checks that the bytes of every view are there, and every picture that lies beside the file: a download that was
-    /// cut short has lost some.
+    /// Checks that the bytes of every view are there, and every picture that is a file of its own. An incomplete download
+    /// lacks some of them.
     pub(super) fn check_views(&self) -> Result<(), String> {
         for number in 0..self.root.buffer_views.len() {
             self.view(Index::new(u32::try_from(number).unwrap_or(u32::MAX)))?;
@@ -77,8 +77,8 @@ impl Asset {
         self.beside.bytes(uri)
     }
 
-    /// Length of the file and of all files that have been read beside it so far, bytes. Limits for what is made from
-    /// them depend on it.
+    /// Length of the file and of all other files that were read for it so far, bytes. The limits for meshes and textures depend
+    /// on it.
     pub(super) fn length(&self) -> u64 {
         self.beside.bytes.get()
     }
@@ -97,7 +97,7 @@ impl Asset {
     }
 }
 
-/// The files beside a file. Each is read once, however often and in whatever spelling it is named.
+/// The files in a file's folder to which it refers. Each is read once, however often and in whatever spelling it is named.
 struct Beside {
     folder: PathBuf,
     read: RefCell<BTreeMap<PathBuf, Rc<Vec<u8>>>>,
@@ -105,7 +105,7 @@ struct Beside {
 }
 
 impl Beside {
-    /// The bytes that a relative URI refers to: a file beside, or data within the URI itself.
+    /// The bytes that a relative URI refers to: a file in the folder, or data within the URI itself.
     fn bytes(&self, uri: &str) -> Result<Rc<Vec<u8>>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
             let (_, text) = data.split_once(";base64,").ok_or("a data URI without base64")?;
@@ -151,7 +151,7 @@ struct Address {
     uri: Option<String>,
 }
 
-/// The existing files that a GLB or glTF file names. Errors in the file are ignored here, because [`Asset::read`]
+/// The existing files to which a GLB or glTF file refers. Errors in the file are ignored here, because [`Asset::read`]
 /// reports them.
 pub(crate) fn files_beside(file: &Path) -> Vec<PathBuf> {
     let addresses: Option<Addresses> = document(file).and_then(|text| serde_json::from_slice(&text).ok());

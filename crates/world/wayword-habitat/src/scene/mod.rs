@@ -1,4 +1,4 @@
-//! Reads scenes as Habitat does: GLB and glTF with their textures, rotated as the stage configuration says.
+//! Reads scenes as Habitat does: GLB and glTF with their textures, rotated according to the stage configuration.
 
 mod accessor;
 mod asset;
@@ -41,7 +41,7 @@ impl Model {
     /// Reads a stage's file.
     ///
     /// # Errors
-    /// If it cannot be read; the message says which item of the file is wrong.
+    /// If it cannot be read; the message names the faulty item of the file.
     pub fn of(stage: &Stage) -> Result<Self, FileError> {
         Self::read(&stage.asset, stage.habitat_from_asset)
     }
@@ -53,8 +53,8 @@ impl Model {
         reading.placed(file, habitat_from_asset)
     }
 
-    /// Reads a file's triangles without decoding its pictures, of which it checks only that their bytes are there. That
-    /// takes a small part of the time and memory.
+    /// Reads a file's triangles without decoding its pictures; it checks only that their bytes are there. This takes a small
+    /// part of the time and memory.
     pub(crate) fn shape(file: &Path, habitat_from_asset: DMat3) -> Result<Self, FileError> {
         let asset = Asset::read(file)?;
         asset.check_views().map_err(|reason| FileError::new(file, reason, HINT))?;
@@ -169,7 +169,7 @@ impl<'a> Reading<'a> {
         })
     }
 
-    /// Transforms texture coordinates as the material says. A textured mesh without coordinates shows the texture's
+    /// Transforms texture coordinates according to the material. A textured mesh without coordinates shows the texture's
     /// corner.
     fn finish(&self, mesh: &mut Mesh, primitive: &gltf::json::mesh::Primitive) {
         if self.model.materials.get(mesh.material).is_none_or(|material| material.texture.is_none()) {

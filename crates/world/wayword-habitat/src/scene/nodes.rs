@@ -3,8 +3,8 @@
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::{Root, scene::Node};
 
-/// Every mesh of the scene with its transform into the file's frame. A node that is reached twice (glTF does not allow
-/// this) is skipped, so a cycle ends.
+/// Every mesh of the scene with its transform into the file's frame. A node that is reached twice is skipped, so that a
+/// cycle ends; glTF does not allow cycles.
 pub(super) fn placed_meshes(root: &Root) -> Vec<(usize, DMat4)> {
     let mut seen = vec![false; root.nodes.len()];
     let first = root.scene.map_or(0, |scene| scene.value());

@@ -12,7 +12,7 @@ const FREE_TEXELS: u64 = 1 << 20;
 /// less uniform.
 const TEXELS_PER_BYTE: u64 = 512;
 
-/// The texture of this number.
+/// Reads the texture with this number.
 pub(super) fn texture(asset: &Asset, number: usize) -> Result<Texture, String> {
     let texture = asset.root.textures.get(number).ok_or_else(|| format!("texture {number} does not exist"))?;
     let basis = texture.extensions.as_ref().and_then(|all| all.others.get("GOOGLE_texture_basis"));
@@ -32,14 +32,14 @@ pub(super) fn texture(asset: &Asset, number: usize) -> Result<Texture, String> {
     decode(bytes).map_err(wrong)
 }
 
-/// Decodes a picture; its first bytes say which format it has.
+/// Decodes a picture. The first bytes determine its format.
 fn decode(bytes: &[u8]) -> Result<Texture, String> {
     // "sB", the signature of a .basis file.
     if bytes.starts_with(b"sB") { basis(bytes) } else { common(bytes) }
 }
 
-/// Most texels of all pictures together in a file of this many bytes. There is a limit because many pictures may refer
-/// to the same bytes.
+/// Most texels of all pictures together, for a file of this many bytes. A limit for each picture is not enough, because
+/// many pictures may refer to the same bytes.
 pub(super) fn most_texels(bytes: u64) -> u64 {
     4 * FREE_TEXELS + TEXELS_PER_BYTE.saturating_mul(bytes)
 }
@@ -80,7 +80,7 @@ pub(crate) mod tests {
     use super::*;
 
     /// 16 x 16 texels in ETC1S, in base64: the left half red, the right half green above blue. Made with the reference
-    /// encoder (basis_universal 1.16) from a picture of our own.
+    /// encoder (basis_universal 1.16) from a picture of the project's own.
     const ETC1S: &str = "c0ITAE0AvwSIAAAAIxABAAABAAAAEQAAAAAAAAAAAAAAAAAAAAAAAwBkAAAALwAAAwCTAAAADQAAoAAAAC8AAABNAAAAAAAAAAAAAAAAAAAA\
     ABAAEAAEAAQAzwAAAAYAAADe6CBA3AABAAAASF6Q3QUwJQAAAAAAgGQHPAATAgQAAAAAyAEZACYABAAAAACQYjwDBAAAAKiqqqpSVVVVBRTA\
     hAABAAAAALJBBoAJAAAAAAAQZCXA1IABAABhABaonNwJEABMAAAAAAAAIIAA43s0aJ4G";
@@ -115,7 +115,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_is_far_larger_than_its_bytes_is_refused_before_it_is_unpacked() {
+    fn decode_refuses_pictures_far_larger_than_their_bytes() {
         let mut bytes = png(1, 1, &[0; 4]);
         // The width in the header, and its checksum.
         bytes[16..20].copy_from_slice(&16_000_u32.to_be_bytes());
@@ -127,7 +127,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_is_refused() {
+    fn decode_refuses_bytes_that_are_no_picture() {
         assert!(decode(b"").is_err());
         assert!(decode(b"sB").unwrap_err().starts_with("Basis: "));
         assert!(decode(&[b's', b'B', 0x13, 0, 77, 0, 0xff, 0xff, 0xff, 0xff].repeat(20)).is_err());

@@ -1,4 +1,4 @@
-//! Stage configurations: which file is drawn, and which direction is up in it.
+//! Reads stage configurations: which file a scene is drawn from, and which direction is up in it.
 
 use crate::fault::{self, FileError};
 use glam::{DMat3, DVec3};
@@ -34,7 +34,7 @@ const MAX_BYTES: u64 = 1 << 20;
 const ENDING: &str = ".stage_config.json";
 
 impl Stage {
-    /// The stage of a file: a configuration, or a GLB or glTF file, whose configuration is looked for beside it. A
+    /// The stage of a file: a configuration, or a GLB or glTF file, which may have a configuration in its folder. A
     /// stage without a configuration has z up and y in front (`StageAttributesManager.cpp`,
     /// `setDefaultAssetNameBasedAttributes`).
     ///
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_up_in_the_file_is_up_in_habitat() {
+    fn stage_axes_turn_up_and_front_to_habitats() {
         let z_up = stage("{}").unwrap();
         assert_eq!(z_up.asset, Path::new("a/x.glb"));
         assert_eq!(z_up.habitat_from_asset * DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, 3.0, -2.0));
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_that_are_none_are_refused() {
+    fn stage_config_refuses_unusable_axes() {
         assert!(stage(r#"{"up": [0, 0, 0]}"#).unwrap_err().contains("up is not a direction"));
         assert!(stage(r#"{"up": [0, 1, 0]}"#).unwrap_err().contains("is parallel to up"));
         assert!(stage(r#"{"units_to_meters": 0}"#).unwrap_err().contains("units_to_meters is 0"));

@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_looks_up_is_lit_from_above() {
+    fn studio_light_depends_on_the_normal() {
         assert_eq!(light(Vec3::Z).map(|part| (part * 255.0).round()), [141.0, 124.0, 85.0]);
         let between = light(Vec3::new(1.0, 0.0, 1.0));
         assert!((between[2] * 255.0 - 94.5).abs() < 0.1);

@@ -131,7 +131,7 @@ fn nodes_in_a_circle_come_to_an_end() {
 }
 
 #[test]
-fn what_is_named_again_and_again_is_refused_before_it_fills_memory() {
+fn repeated_meshes_and_pictures_are_refused_before_memory_fills() {
     let (mut document, mut bytes) = triangle();
     let mut png = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut png);
@@ -174,7 +174,7 @@ fn a_file_beside_is_read_once_however_it_is_spelt() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn no_bytes_make_the_reader_fall_over(at in 0usize..2200, with: [u8; 2]) {
+    fn gltf_reader_survives_any_bytes(at in 0usize..2200, with: [u8; 2]) {
         let (document, bytes) = triangle();
         let mut file = glb(&document, &bytes);
         let at = at % file.len();

@@ -1,4 +1,4 @@
-//! `*.semantic.txt` of HM3D: which colour of the semantic mesh stands for which object.
+//! Reads HM3D's `*.semantic.txt`, which gives the name and the room of the object for each colour of the semantic mesh.
 //!
 //! A header, then `id,RRGGBB,"category",region` on each line; a category may contain commas (HM3D's semantics, version
 //! 0.2).
@@ -49,7 +49,7 @@ fn entry(line: &str) -> Result<([u8; 3], Thing), String> {
     let bits = u32::from_str_radix(colour, 16).ok().filter(|_| is_hex);
     let [_, red, green, blue] = bits.ok_or_else(|| format!("{colour:.20?} is not a 6-digit hex colour"))?.to_be_bytes();
     let id = ObjectId::new(number.to_string()).map_err(|error| error.to_string())?;
-    // HM3D gives -1 to what lies in no room.
+    // HM3D gives the region -1 to objects outside all rooms.
     let room = u32::try_from(region).ok();
     Ok(([red, green, blue], Thing { room, ..Thing::new(id, category.trim().trim_matches('"')) }))
 }

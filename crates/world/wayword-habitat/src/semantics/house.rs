@@ -1,7 +1,8 @@
-//! `.house` files of Matterport3D as Habitat uses them: the names of the objects of a semantic mesh, and the boxes of
-//! the rooms.
+//! Reads Matterport3D's `.house` files as Habitat uses them: the names of the objects of a semantic mesh, and the boxes
+//! of the rooms.
 //!
-//! Format: Matterport3D's `data_organization.md`. Read here: `R` regions with their boxes, `O` objects, `C` categories.
+//! Format: Matterport3D's `data_organization.md`. This reader uses the lines `R` (regions with their boxes), `O` (objects)
+//! and `C` (categories), and skips the others.
 
 use super::{Region, Thing};
 use std::collections::BTreeMap;
@@ -50,7 +51,7 @@ pub(super) fn parse(text: &str) -> Result<House, String> {
     Ok(house)
 }
 
-/// The words of a line.
+/// The words of a line, by column.
 struct Record<'a, 'b> {
     words: &'b [&'a str],
 }

@@ -1,4 +1,4 @@
-//! Finds what is visible from the pixels of the semantic picture.
+//! Makes the labels of a view from the pixels of the semantic picture.
 
 use super::{Semantics, Thing};
 use wayword_core::{Gaze, Heading, Label};

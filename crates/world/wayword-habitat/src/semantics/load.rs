@@ -1,4 +1,4 @@
-//! Reads the semantic files of a scene.
+//! Reads the semantic files of a scene: a mesh that is painted in the colours of its objects, or one with numbered faces.
 
 use super::{Semantics, Thing, hm3d, house, ply, rooms::Rooms};
 use crate::{
@@ -19,15 +19,15 @@ const MAX_MESH: u64 = 4 << 30;
 const HM3D_HINT: &str = "download it again from HM3D's semantic annotations";
 const MATTERPORT_HINT: &str = "download it again from Matterport3D for Habitat";
 
-/// The id of triangles whose object is found from their colour in the picture.
+/// The id of triangles with painted textures: their objects follow from the colours in the picture.
 pub(super) const PAINTED: u32 = u32::MAX;
 
 /// The semantic files of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SemanticFiles {
-    /// HM3D's painted mesh, and the file of the colours' meanings.
+    /// HM3D's painted mesh, and the file that maps colours to objects.
     pub(crate) painted: Option<(PathBuf, PathBuf)>,
-    /// Matterport3D's mesh with numbered faces, and the file of the numbers' meanings.
+    /// Matterport3D's mesh with numbered faces, and the file that maps numbers to objects.
     pub(crate) numbered: Option<(PathBuf, PathBuf)>,
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn load(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<O
     }
 }
 
-/// Reads the files as [`load`] does, but decodes no picture. Says where the names of rooms come from.
+/// Reads the files as [`load`] does, but decodes no picture. Returns the source of the rooms' names.
 pub(crate) fn check(files: &SemanticFiles, habitat_from_asset: DMat3) -> Result<RoomNames, FileError> {
     if let Some((mesh, names)) = &files.painted {
         hm3d::parse(&text(names, HM3D_HINT)?).map_err(|reason| FileError::new(names, reason, HM3D_HINT))?;

@@ -1,4 +1,4 @@
-//! Which object is where in a scene, from its semantic mesh: the mesh is drawn, and the pixels show the objects.
+//! Finds the objects and the room that a camera sees. The scene's semantic mesh is drawn, and the pixels show the objects.
 
 mod hm3d;
 mod house;
@@ -27,7 +27,7 @@ pub(crate) struct Thing {
     bounds: Option<(DVec3, DVec3)>,
     /// The number of its room, where rooms are numbered and not named.
     room: Option<u32>,
-    /// What it tells of where its room is.
+    /// The part of the room's shell that it is, if it is one: only those show where the room is.
     part: Option<Part>,
 }
 
@@ -53,7 +53,7 @@ struct Region {
     letter: char,
 }
 
-/// A scene whose surfaces refer to objects.
+/// A scene in which each surface belongs to an object.
 #[derive(Debug)]
 pub(crate) struct Semantics {
     scene: Scene,
@@ -66,7 +66,7 @@ pub(crate) struct Semantics {
 }
 
 impl Semantics {
-    /// The picture whose ids are the indices of things plus 1; 0 means no thing.
+    /// Draws the scene with the indices of things plus 1 as ids; 0 means no thing.
     fn picture(&self, camera: &Camera) -> Result<Picture, RenderError> {
         if self.by_colour.is_empty() {
             return render_ids(&self.scene, camera);
@@ -88,8 +88,8 @@ impl Semantics {
         self.things.iter().find(|thing| thing.id == *object)
     }
 
-    /// The word for the room that an eye sees: of several boxes around it the smallest counts. Where rooms are only
-    /// numbered, it is the word that the things in the room suggest, and in an opening that of the room ahead.
+    /// The word for the room that an eye sees. Of several boxes around the eye the smallest counts. Where rooms are only
+    /// numbered, the word follows from the things in the room, and in an opening from those in the room ahead.
     pub(crate) fn room(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
         let holds = |region: &&Region| region.low.cmple(eye).all() && region.high.cmpge(eye).all();
         let size = |region: &Region| (region.high - region.low).element_product();

@@ -1,4 +1,5 @@
-//! `*_semantic.ply` of Matterport3D: a mesh whose faces name objects. Binary and little-endian, like Habitat's files.
+//! Reads Matterport3D's `*_semantic.ply`: a mesh with an object's number on each face. Binary and little-endian, as in
+//! Habitat's files.
 //!
 //! `ply-rs-bw` reads the header and one entry after the other. The number of entries is checked against the bytes that
 //! are left, so that a file cannot use more memory than a multiple of its own length.
@@ -91,7 +92,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), String> {
     Ok((header, rest))
 }
 
-/// The reader's message without the line that it quotes, which may be as long as the header.
+/// The first line of the reader's message; the next one quotes the header, which may be very long.
 fn brief(error: &ParseError) -> String {
     error.to_string().lines().next().unwrap_or_default().chars().take(200).collect()
 }
@@ -158,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn parse_refuses_cut_and_foreign_ply_files() {
         let cut = square();
         assert!(parse(&cut[..cut.len() - 1]).unwrap_err().contains("the file is cut off"));
         let many = String::from_utf8_lossy(&square()[..60]).replace("vertex 4", "vertex 999999999");
@@ -168,7 +169,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_make_the_reader_fall_over(at in 0usize..400, with: [u8; 2]) {
+        fn ply_reader_survives_any_bytes(at in 0usize..400, with: [u8; 2]) {
             let mut file = square();
             let at = at % file.len();
             for (byte, new) in file.iter_mut().skip(at).zip(with) {

@@ -1,5 +1,4 @@
-//! Tests with semantic meshes that they write themselves: two panels north of the eye, the left one in front of a
-//! third.
+//! Tests with semantic meshes that are written here: two panels north of the eye, the left one in front of a third.
 
 use super::*;
 use crate::scene::{Stage, tests::glb};
@@ -119,7 +118,7 @@ fn semantics(mesh: (&str, &[u8]), text: (&str, &str)) -> Semantics {
     load(&files, stage.habitat_from_asset).unwrap().unwrap()
 }
 
-fn seen(semantics: &Semantics) -> Vec<(String, String)> {
+fn seen_labels(semantics: &Semantics) -> Vec<(String, String)> {
     let camera = Camera {
         position: DVec3::new(0.0, 0.0, 1.5),
         heading_rad: 0.0,
@@ -137,10 +136,10 @@ fn two(first: (&str, &str), second: (&str, &str)) -> Vec<(String, String)> {
 }
 
 #[test]
-fn labels_are_what_the_pixels_show_however_the_mesh_is_painted() {
+fn labels_match_the_pixels_for_vertex_and_texture_paint() {
     for mesh in [by_vertices(), by_texture()] {
         let semantics = semantics(("x.semantic.glb", &mesh), ("x.semantic.txt", ANNOTATIONS));
-        assert_eq!(seen(&semantics), two(("1", "sofa"), ("2", "lamp")));
+        assert_eq!(seen_labels(&semantics), two(("1", "sofa"), ("2", "lamp")));
         assert_eq!(semantics.room(DVec3::ZERO, Heading::NORTH), None);
     }
 }
@@ -148,7 +147,7 @@ fn labels_are_what_the_pixels_show_however_the_mesh_is_painted() {
 #[test]
 fn numbered_faces_have_the_names_of_their_house() {
     let semantics = semantics(("x_semantic.ply", &by_numbers()), ("x.house", HOUSE));
-    assert_eq!(seen(&semantics), two(("0", "sofa"), ("1", "lamp")));
+    assert_eq!(seen_labels(&semantics), two(("0", "sofa"), ("1", "lamp")));
     assert_eq!(semantics.room(DVec3::new(0.0, 0.0, 1.5), Heading::NORTH), Some("bedroom"));
     assert_eq!(semantics.room(DVec3::new(5.0, 0.0, 1.5), Heading::NORTH), Some("living room"));
     let lamp = semantics.named(&ObjectId::new("1").unwrap()).unwrap();

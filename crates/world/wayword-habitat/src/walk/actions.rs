@@ -1,4 +1,4 @@
-//! What an agent can do, and where it is.
+//! The actions of an agent, and the position that each of them leads to.
 
 use crate::ground::{Foothold, Ground, Stride};
 use wayword_core::{Action, DVec3, Heading};
@@ -13,13 +13,13 @@ pub struct Gait {
     turn_deg: f64,
 }
 
-/// Steps or turns that cannot be walked with.
+/// Why steps or turns cannot be used for walking.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoGait {
-    /// A step that is too short, too long, or no number.
+    /// The step is too short, too long, or not a number.
     #[error("a step of {0} m: it must be from 0.01 to 2 m long")]
     Forward(f64),
-    /// A turn that does not lead round in whole turns.
+    /// No whole number of turns makes a half turn.
     #[error(
         "a turn of {0} degrees: it must be at least 1 degree, and a whole number of turns must make 180 degrees, as with 15 or 30"
     )]
@@ -54,7 +54,7 @@ impl Gait {
         self.turn_deg
     }
 
-    /// How many turns make a half turn.
+    /// The number of turns in a half turn.
     pub(super) fn turns_around(self) -> i32 {
         (180.0 / self.turn_deg).round() as i32
     }
@@ -67,13 +67,13 @@ impl Default for Gait {
     }
 }
 
-/// Where an agent stands, and how often it has turned.
+/// Position and direction of an agent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stance {
     /// Its place on the ground.
     pub foothold: Foothold,
     start: Heading,
-    /// Turns to the right, less those to the left. The heading is counted from the start, so that no error adds up.
+    /// Turns to the right, less those to the left. The heading is computed from the start each time, so that no error adds up.
     turns: i32,
 }
 
@@ -84,24 +84,24 @@ impl Stance {
         Self { foothold, start: heading, turns: 0 }
     }
 
-    /// The direction in which it looks.
+    /// The direction in which the agent looks.
     #[must_use]
     pub fn heading(&self, gait: Gait) -> Heading {
         self.start.turned(f64::from(self.turns) * gait.turn_deg.to_radians())
     }
 
-    /// The same after so many turns to the right; to the left if negative.
+    /// The stance after a number of turns to the right; to the left if negative.
     pub(super) fn turned(self, turns: i32) -> Self {
         Self { turns: self.turns + turns, ..self }
     }
 
-    /// Where a step forward leads.
+    /// The end of a step forward.
     pub(super) fn ahead(&self, ground: &Ground, gait: Gait) -> Stride {
         let to: DVec3 = self.foothold.place + self.heading(gait).direction() * gait.forward_m;
         ground.stride(&self.foothold, to)
     }
 
-    /// The agent after an action, and whether the ground blocked it.
+    /// The stance after an action, and whether the ground blocked the action.
     #[must_use]
     pub fn after(self, action: Action, ground: &Ground, gait: Gait) -> (Self, bool) {
         match action {

@@ -1,4 +1,7 @@
 //! Follows a line over the ground by single actions.
+//!
+//! The search is greedy. Before each step forward it tries all turns, and takes the one after which the step ends nearest to a point
+//! a little ahead on the line. Where the agent got stuck behind a corner, it compares ways over the ground instead of straight lines.
 
 use super::{
     actions::{Gait, Stance},
@@ -9,16 +12,16 @@ use wayword_core::{Action, DVec3, Heading};
 
 /// How far ahead on the line the agent aims, in steps.
 const AIM_STEPS: f64 = 2.0;
-/// How much nearer to its aim a step must end so that the agent turns once more for it, in steps. It keeps the agent
-/// from turning to and fro on a straight line.
+/// A turn costs as much as this distance to the aim, in steps: the agent turns only for a step that ends so much nearer. This keeps
+/// it from turning to and fro on a straight line.
 const TURN_STEPS: f64 = 0.04;
-/// A step forward gets at least this much farther along the line, in steps.
+/// Least progress of a step forward along the line, in steps.
 const PROGRESS_STEPS: f64 = 0.1;
-/// How far along the line a step can get, in steps: around a corner, more than one.
+/// Greatest progress of a step forward along the line, in steps: around a corner, more than one.
 const REACH_STEPS: f64 = 3.0;
-/// Two places of the ground whose heights differ by less are on one level, metres.
+/// Places of the ground with a smaller difference in height are on one level, metres.
 const LEVEL_M: f64 = 0.1;
-/// The ground under a place of the walk is at most this far beside it, metres.
+/// Greatest distance of a walk's place from the ground nearest to it, seen from above, metres.
 const BESIDE_M: f64 = 0.5;
 /// Most actions of one walk.
 const MOST_ACTIONS: usize = 20_000;
@@ -28,9 +31,9 @@ const MOST_ACTIONS: usize = 20_000;
 pub struct Walked {
     /// The actions; the last is [`Action::Stop`].
     pub actions: Vec<Action>,
-    /// Where the agent is before each action.
+    /// The position of the agent before each action.
     pub stances: Vec<Stance>,
-    /// For each place of the walk, the number of the action before which the agent has come there.
+    /// For each place of the walk, the number of the action before which the agent has reached it.
     pub reached: Vec<usize>,
     /// How far the agent stops from the last place, metres.
     pub off_m: f64,
@@ -44,27 +47,27 @@ pub enum Astray {
     NoWay {
         /// Its number, from 0.
         place: usize,
-        /// What is wrong.
+        /// Why it cannot be reached.
         reason: NoWay,
     },
-    /// The ground nearest to a place lies beside it, so that the walk would lead elsewhere.
+    /// The nearest ground is not under the place but at some distance from it, so the walk would lead elsewhere.
     #[error("place {place} of the walk: the nearest ground is {off_m:.2} m beside it")]
     Beside {
         /// Its number, from 0.
         place: usize,
-        /// How far beside, metres.
+        /// Distance of that ground, metres.
         off_m: f64,
     },
-    /// No action leads on.
+    /// No action leads any farther along the walk.
     #[error("blocked after {actions} actions at ({:.2}, {:.2}, {:.2}), {left_m:.2} m before the end: no step forward stays within {tolerance_m} m of the walk", .at.x, .at.y, .at.z)]
     Blocked {
-        /// Where, world frame, metres.
+        /// Position of the agent, world frame, metres.
         at: DVec3,
-        /// How many actions were taken.
+        /// Number of actions that the agent took.
         actions: usize,
-        /// What is left of the walk, metres.
+        /// Remaining length of the walk, metres.
         left_m: f64,
-        /// How far the agent may be off the walk, metres.
+        /// Greatest distance from the walk that is allowed, metres.
         tolerance_m: f64,
     },
     /// The walk takes too many actions.
@@ -72,13 +75,13 @@ pub enum Astray {
     TooLong,
 }
 
-/// Follows a walk greedily: the shortest ways from each of its places to the next, joined. The agent begins at the
-/// first place and looks along `heading`. Before each step forward it turns to where the step ends nearest to a point
-/// two steps ahead; it takes no step that the ground blocks or that ends more than `tolerance_m` off the walk. It stops
-/// when less than half a step is left.
+/// Follows a walk greedily, along the shortest ways from each of its places to the next. The agent begins at the first place and
+/// looks along `heading`. Before each step forward it makes the turns after which the step ends nearest to a point two steps ahead.
+/// It takes no step that the ground blocks or that ends more than `tolerance_m` off the walk. It stops when less than half a step is
+/// left.
 ///
 /// # Errors
-/// [`Astray`], with the place.
+/// [`Astray`] names the place of the walk, or where the agent was blocked.
 pub fn follow(
     ground: &Ground,
     places: &[DVec3],
@@ -97,8 +100,8 @@ pub fn follow(
     Ok(Walked { off_m: (end - last).truncate().length(), ..walked })
 }
 
-/// Where an agent is before each of these actions and after the last; `None` for a step that the ground blocked, and
-/// nothing after it.
+/// The position of an agent before each of these actions and after the last. A step that the ground blocks gives `None`, and ends
+/// the sequence.
 pub fn replay<'a>(
     ground: &'a Ground,
     start: Stance,
@@ -173,8 +176,8 @@ impl Follower<'_> {
         Ok(Walked { actions, stances, reached, off_m: 0.0 })
     }
 
-    /// The turns before the next step forward, and how far along the line that step ends. Of two that are as good, the
-    /// one with fewer turns, and then the one to the left.
+    /// The number of turns before the next step forward (negative to the left), and how far along the line that step ends. Of equally
+    /// good steps, the one with fewer turns wins, and then the one to the left.
     fn best(&self, now: Stance, along: f64) -> Option<(i32, f64)> {
         let aim = self.line.at(along + AIM_STEPS * self.gait.forward_m());
         let steps = self.steps(now, along).filter(|step| step.along - along >= self.least_m());
@@ -183,8 +186,8 @@ impl Follower<'_> {
         Some((found.turns, found.along))
     }
 
-    /// The step that shortens the way to the aim most, where no step gets farther along the line: the agent cut a corner,
-    /// and stands before the wall behind it.
+    /// The step that shortens the way to the aim most. It is needed where no step gets farther along the line, because the agent cut a
+    /// corner and now faces the wall behind it.
     fn round_a_corner(&self, now: Stance, along: f64, aim: DVec3) -> Option<Step> {
         let left_m = |place: DVec3| self.ground.geodesic(place, aim).ok().map(|way| way.length_m);
         let before_m = left_m(now.foothold.place)?;
@@ -197,7 +200,7 @@ impl Follower<'_> {
         least(steps)
     }
 
-    /// The steps forward that the ground allows and that stay within the tolerance, by their turns.
+    /// The steps forward that the ground allows and that end within the tolerance, for every number of turns before them.
     fn steps(&self, now: Stance, from_m: f64) -> impl Iterator<Item = Step> {
         let to_m = from_m + REACH_STEPS * self.gait.forward_m();
         let turns = (0..=self.gait.turns_around()).flat_map(|turns| [-turns, turns]);
@@ -207,7 +210,7 @@ impl Follower<'_> {
             if stride.is_blocked || off_m > self.tolerance_m {
                 return None;
             }
-            // Else the agent could end beside a part of the walk that lies beyond a wall, or on another level.
+            // Otherwise the step could end next to a part of the walk that is beyond a wall or on another level.
             let on_line = self.ground.nearest(self.line.at(along))?.place;
             let across = self.ground.stride(&stride.end, on_line);
             let is_beside = !across.is_blocked && (across.end.place.z - on_line.z).abs() <= LEVEL_M;
@@ -215,7 +218,7 @@ impl Follower<'_> {
         })
     }
 
-    /// What a step must gain at least, metres.
+    /// Least progress of a step, metres.
     fn least_m(&self) -> f64 {
         PROGRESS_STEPS * self.gait.forward_m()
     }
@@ -234,7 +237,7 @@ struct Step {
     along: f64,
 }
 
-/// The step with the least cost; of equals the first.
+/// The step with the least cost; of equal ones, the first.
 fn least(steps: impl Iterator<Item = (f64, Step)>) -> Option<Step> {
     steps.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, step)| step)
 }

@@ -1,8 +1,8 @@
-//! A line on the ground that a walk keeps to.
+//! The line on the ground that a walk follows: it measures how far along the line a place is, and how far off it.
 
 use wayword_core::DVec3;
 
-/// Two points of the line nearer than this are one, metres.
+/// Two points of the line that are nearer than this count as one, metres.
 const SAME_M: f64 = 1e-6;
 /// The ground under a place of the line lies at most this far above or below it, metres: on stairs the line runs straight.
 const HEIGHT_M: f64 = 1.2;
@@ -14,7 +14,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Goes on to a place. Gives how far along the line it is, metres.
+    /// Appends a place to the line. Returns how far along the line the place is, metres.
     pub(super) fn push(&mut self, place: DVec3) -> f64 {
         let at = match self.points.last() {
             Some((last, at)) => at + (place - *last).truncate().length(),
@@ -26,12 +26,12 @@ impl Line {
         at
     }
 
-    /// Its length, metres.
+    /// Length of the line, metres.
     pub(super) fn length_m(&self) -> f64 {
         self.points.last().map_or(0.0, |(_, at)| *at)
     }
 
-    /// The place so far along it.
+    /// The place at a distance along the line, metres.
     pub(super) fn at(&self, along_m: f64) -> DVec3 {
         let after = self.points.partition_point(|(_, at)| *at < along_m);
         match (after.checked_sub(1).and_then(|before| self.points.get(before)), self.points.get(after)) {
@@ -41,8 +41,8 @@ impl Line {
         }
     }
 
-    /// The part of the line from `from_m` to `to_m` that is nearest to a place: how far along the line, and how far
-    /// off, metres. `None` where the line is on another storey.
+    /// The nearest point to a place on the part of the line from `from_m` to `to_m`: how far along the line it is, and how far from
+    /// the place, metres. `None` where the line is on another storey.
     pub(super) fn nearest(&self, place: DVec3, from_m: f64, to_m: f64) -> Option<(f64, f64)> {
         let first = self.points.partition_point(|(_, at)| *at <= from_m).saturating_sub(1);
         let pieces = self.points[first..].windows(2).take_while(|pair| pair[0].1 <= to_m);
@@ -55,7 +55,7 @@ impl Line {
             (along, (on - place).truncate().length(), (on.z - place.z).abs())
         });
         let near = near.filter(|(_, _, height_m)| *height_m <= HEIGHT_M);
-        // Of two places that are as near, the one farther along.
+        // Of two points at the same distance, the one farther along wins.
         near.min_by(|a, b| a.1.total_cmp(&b.1).then(b.0.total_cmp(&a.0))).map(|(along, off, _)| (along, off))
     }
 }

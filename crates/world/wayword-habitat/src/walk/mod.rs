@@ -1,4 +1,4 @@
-//! Walks in single actions, as agents of VLN-CE take them: a step forward, or a turn on the spot.
+//! Turns walks over the ground into single actions, as agents of VLN-CE take them: a step forward, or a turn on the spot.
 
 mod actions;
 mod follow;

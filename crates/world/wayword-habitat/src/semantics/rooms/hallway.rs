@@ -1,4 +1,4 @@
-//! Hallways have few things in them that name them, but a shape: narrow, long, and with doors to several rooms.
+//! Recognises hallways by their shape: narrow, long, and with doors to several rooms. Few things in them show what they are.
 
 use super::{super::Thing, LEVEL_M, Part, Rooms};
 use std::collections::BTreeMap;
@@ -6,28 +6,28 @@ use wayword_core::DVec3;
 
 pub(super) const NAME: &str = "hallway";
 
-/// Broadest that a hallway is, metres.
+/// Greatest width of a hallway, metres.
 const BROAD_M: f64 = 2.2;
-/// Shortest that it is, metres.
+/// Least length of a hallway, metres.
 const LONG_M: f64 = 3.0;
-/// Longest that it is, metres; more is no single hallway, and would take long to look through.
+/// Greatest length of a hallway, metres. A longer one is hardly a single hallway, and would take long to examine.
 const LONGEST_M: f64 = 40.0;
-/// How often it is as long as it is broad.
+/// Least length as a multiple of the width.
 const LONGER: f64 = 2.0;
-/// Fewest rooms to which it leads.
+/// Least number of rooms to which a hallway leads.
 const ROOMS: usize = 3;
 /// Width of a door or doorway, metres.
 const DOOR_M: std::ops::RangeInclusive<f64> = 0.4..=1.8;
-/// If floors touch along more than this, a room goes on in another, metres: its number stands for a part of a room.
+/// Floors that touch along more than this belong to one open room, metres: their numbers are for parts of it.
 const OPEN_M: f64 = 2.6;
-/// Most rooms that are looked at, and most triangles near one place: real scenes have fewer, and more would take long.
+/// Most rooms that are examined, and most triangles near one place. Real scenes have fewer, and more would take long.
 const MOST_ROOMS: usize = 64;
 const MOST_NEAR: usize = 1000;
 /// Distance of the places at which floors are looked up, metres: less than the thickness of a wall.
 const STEP_M: f64 = 0.05;
 
 impl Rooms {
-    /// The hallways among rooms in which nothing speaks for another name.
+    /// The hallways among `silent`, the rooms in which no thing suggests another name.
     pub(super) fn hallways(&self, silent: &[u32], things: &[Thing]) -> Vec<u32> {
         if self.shell.as_ref().is_none_or(|shell| shell.most_near() > MOST_NEAR) {
             return Vec::new();
@@ -36,9 +36,8 @@ impl Rooms {
         looked_at.filter(|room| self.is_hallway(*room, things)).collect()
     }
 
-    /// Whether it is a hallway: its floor is narrow and long, it has a
-    /// ceiling, and it leads to three rooms or more, of which one is a bathroom or has stairs. A balcony has none of these
-    /// last.
+    /// Whether a room is a hallway: its floor is narrow and long, it has a ceiling, and it leads to three rooms or more, of
+    /// which one is a bathroom or has stairs. The ceiling and the last condition keep balconies out.
     fn is_hallway(&self, room: u32, things: &[Thing]) -> bool {
         let bounds = |part: Part| {
             let of_room = things.iter().filter(|thing| thing.room == Some(room) && thing.part == Some(part));

@@ -1,8 +1,8 @@
-//! Rooms that are numbered and not named, as in HM3D: where each is, and the name that the things in it suggest.
+//! Rooms that have numbers but no names, as in HM3D: finds where each of them is, and the name that its things suggest.
 //!
-//! Every thing carries the number of its room, and so do floors, stairs and ceilings. So the floor under an eye says in
-//! which room it is. No name comes from the dataset: it follows from labels by the rules of `rooms.txt`, and is left out
-//! where they are not sure.
+//! Every object carries the number of its room, and so do floors, stairs and ceilings. So the floor under an eye shows
+//! which room the eye is in. The dataset gives no names. They follow from the labels in a room by the rules in
+//! `rooms.txt`; a room about which the rules are not sure gets no name.
 
 mod hallway;
 mod rules;
@@ -16,18 +16,18 @@ use rules::{Verdict, verdict};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Heading};
 
-/// Farthest that the floor is looked for under an eye, metres.
+/// Greatest distance at which the floor under an eye is searched, metres.
 const UNDER_M: f64 = 3.0;
-/// Farthest that a ceiling is looked for over an eye, metres.
+/// Greatest distance at which the ceiling over an eye is searched, metres.
 const OVER_M: f64 = 4.0;
-/// How far around an eye the floor is looked for where its mesh has a hole, metres.
+/// Distances around an eye at which the floor is searched where its mesh has a hole, metres.
 const AROUND_M: [f64; 3] = [0.15, 0.3, 0.45];
-/// An eye nearer than this to another room, ahead or behind, stands in the opening between them, metres.
+/// An eye nearer than this to another room, ahead or behind, is in the opening between them, metres.
 const THRESHOLD_M: f64 = 0.25;
-/// An eye nearer than this to another room at its side stands in the wall's opening and sees the jamb, metres: nobody
-/// stands so near to a wall.
+/// An eye nearer than this to another room at its side is in the opening of a wall and sees the jamb, metres: a walker
+/// keeps a larger distance from a wall itself.
 const ASIDE_M: f64 = 0.15;
-/// How far ahead the room is that an eye in an opening sees, metres.
+/// Distance of the room ahead that an eye in an opening sees, metres.
 const AHEAD_M: f64 = 0.5;
 /// Distance of two places at which the floor is looked up, metres: less than the thickness of a wall, under which there
 /// is no floor.
@@ -35,7 +35,7 @@ const STEP_M: f64 = 0.05;
 /// A floor that is higher or lower than this next to a place is another storey's, metres.
 const LEVEL_M: f64 = 0.4;
 
-/// What a surface tells of where its room is.
+/// A part of the shell of a room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     Floor,
@@ -62,10 +62,10 @@ struct Surface {
 }
 
 impl Rooms {
-    /// The rooms of things, with the triangles of their floors, stairs and ceilings and the index of each one's thing.
+    /// The rooms of these things. `shell` has the triangles of floors, stairs and ceilings, each with the index of its thing.
     pub(super) fn of(things: &[Thing], shell: Vec<([Vec3; 3], u32)>) -> Self {
         let mut inside: BTreeMap<u32, Vec<&str>> = BTreeMap::new();
-        // What has no triangles is nowhere.
+        // A thing without triangles has no place, so it is in no room.
         for thing in things.iter().filter(|thing| thing.bounds.is_some()) {
             if let Some(room) = thing.room {
                 let ceiling = (thing.part == Some(Part::Ceiling)).then_some("ceiling");
@@ -89,8 +89,8 @@ impl Rooms {
         rooms
     }
 
-    /// The name of the room that an eye sees: the one it is in, or in an opening the one ahead. In an opening along whose
-    /// wall it looks, it is between two rooms and sees neither.
+    /// The name of the room that an eye sees: the room it is in, or in an opening the room ahead. An eye that looks along the
+    /// wall of an opening is between two rooms and sees neither.
     pub(super) fn seen(&self, eye: DVec3, heading: Heading) -> Option<&'static str> {
         let Some(here) = self.below(eye, UNDER_M) else { return self.name(self.near(eye)?) };
         let (sin, cos) = libm::sincos(heading.rad());
@@ -103,13 +103,13 @@ impl Rooms {
         (!is_between).then(|| self.name(here)).flatten()
     }
 
-    /// On stairs that lie in a room without a name, one is on the stairs.
+    /// The name of a surface's room. Stairs in a room without a name are called stairs.
     fn name(&self, surface: Surface) -> Option<&'static str> {
         let stairs = (surface.part == Part::Stairs).then_some("stairs");
         self.names.get(&surface.room).copied().or(stairs)
     }
 
-    /// The floor from place to place along a way, as far as it goes on without a gap or a ledge.
+    /// The floor from place to place in a direction, up to the first gap or ledge.
     fn walk(&self, from: Surface, eye: DVec3, way: DVec3, far_m: f64) -> impl Iterator<Item = Surface> {
         let mut height_m = from.height_m;
         let steps = (1..).map(|step| f64::from(step) * STEP_M).take_while(move |at_m| *at_m <= far_m + 1e-9);
@@ -121,7 +121,7 @@ impl Rooms {
         })
     }
 
-    /// The room of an eye under which the mesh has a hole: that of the floor beside it, or else of the ceiling.
+    /// The room of an eye under which the mesh has a hole: that of the nearest floor, or else of the ceiling.
     fn near(&self, eye: DVec3) -> Option<Surface> {
         let beside = AROUND_M.into_iter().flat_map(|far_m| {
             let turns = (0..8).map(|turn| libm::sincos(f64::from(turn) * std::f64::consts::FRAC_PI_4));

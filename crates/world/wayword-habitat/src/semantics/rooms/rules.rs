@@ -1,4 +1,7 @@
-//! What the things in a room say of its name, by the rules of `rooms.txt`.
+//! Names rooms by the things in them, with the rules of `rooms.txt`.
+//!
+//! A rule has things that decide for its room, and things that only suggest it. For example, a bed decides for a bedroom. A room gets
+//! a name only if exactly one rule decides, and nothing in it suggests another room.
 
 use super::Part;
 use std::{
@@ -10,23 +13,23 @@ const LIST: &str = include_str!("rooms.txt");
 
 static RULES: LazyLock<Rules> = LazyLock::new(|| Rules::parse(LIST));
 
-/// What the things in a room say of its name.
+/// What the things in a room suggest about its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// It has this name.
     Named(&'static str),
-    /// They speak for different rooms, or not clearly enough for one.
+    /// They suggest different rooms, or no room clearly enough.
     Doubtful,
-    /// They say nothing.
+    /// They suggest no name.
     Silent,
 }
 
-/// What a surface with this plain name tells of where its room is.
+/// The part of a room's shell that has this plain name.
 pub(in super::super) fn part(plain: &str) -> Option<Part> {
     RULES.parts.get(plain).copied()
 }
 
-/// The verdict of things with these plain names.
+/// The verdict on a room that has things with these plain names.
 pub(super) fn verdict<'a>(names: impl Iterator<Item = &'a str>) -> Verdict {
     RULES.verdict(&names.collect())
 }
@@ -34,24 +37,24 @@ pub(super) fn verdict<'a>(names: impl Iterator<Item = &'a str>) -> Verdict {
 #[derive(Debug, Default)]
 struct Rules {
     parts: BTreeMap<&'static str, Part>,
-    /// The word that the rules use for each name that has another.
+    /// The word that the rules use instead of each of its synonyms.
     same: BTreeMap<&'static str, &'static str>,
     rooms: Vec<Rule>,
-    /// Lines that are not understood; a test sees to it that there are none.
+    /// Lines that could not be parsed; a test checks that there are none.
     odd: Vec<&'static str>,
 }
 
 #[derive(Debug)]
 struct Rule {
     room: &'static str,
-    /// Each decides if all its things are there.
+    /// Each group decides if all its things are in the room.
     decides: Vec<Vec<&'static str>>,
     speaks: Vec<&'static str>,
-    /// Rooms whose things may lie in it too.
+    /// Other rooms: things that suggest them may lie in this room too.
     also: Vec<&'static str>,
 }
 
-/// The entries of a list with commas.
+/// The entries of a comma-separated list.
 fn entries(list: &'static str) -> impl Iterator<Item = &'static str> {
     list.split(',').map(str::trim).filter(|entry| !entry.is_empty())
 }
@@ -107,8 +110,8 @@ mod tests {
     use super::*;
     use wayword_world::{object_names::plain, region};
 
-    /// The verdict of things as the annotators write them, by commas.
-    fn told(things: &str) -> Verdict {
+    /// The verdict on things as the annotators write them, separated by commas.
+    fn verdict_on(things: &str) -> Verdict {
         let plain: Vec<String> = things.split(',').filter_map(plain).collect();
         verdict(plain.iter().map(String::as_str))
     }
@@ -122,7 +125,7 @@ mod tests {
             for other in &rule.also {
                 assert!(RULES.rooms.iter().any(|rule| rule.room == *other), "{other} has no line");
             }
-            // A thing that is another's second name would never be found.
+            // The reader replaces synonyms, so a rule that names one would never match.
             for thing in rule.decides.iter().flatten().chain(&rule.speaks) {
                 assert!(!RULES.same.contains_key(thing), "{thing} is another name of {}", RULES.same[thing]);
             }
@@ -130,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_in_a_room_names_it() {
+    fn things_in_a_room_decide_its_name() {
         for (things, room) in [
             ("bed, nightstand, tv", "bedroom"),
             ("king bed, desk, desk chair, couch, tv", "bedroom"),
@@ -152,12 +155,12 @@ mod tests {
             ("front door, shoe rack", "entryway"),
             ("clothes rack, cardboard boxes", "closet"),
         ] {
-            assert_eq!(told(things), Verdict::Named(room), "{things}");
+            assert_eq!(verdict_on(things), Verdict::Named(room), "{things}");
         }
     }
 
     #[test]
-    fn what_speaks_for_two_rooms_names_none() {
+    fn things_of_two_rooms_leave_the_verdict_doubtful() {
         for things in [
             "bed, stove",
             "bed, dining table",
@@ -169,18 +172,18 @@ mod tests {
             "treadmill, sofa, tv",
             "clothes rack, toilet, bed",
         ] {
-            assert_eq!(told(things), Verdict::Doubtful, "{things}");
+            assert_eq!(verdict_on(things), Verdict::Doubtful, "{things}");
         }
     }
 
     #[test]
-    fn what_stands_anywhere_names_nothing() {
+    fn things_of_any_room_leave_the_verdict_silent() {
         for things in ["", "chair, picture, lamp", "sink, mirror", "desk", "toilet paper, bed sheet", "unknown, wall"] {
-            assert_eq!(told(things), Verdict::Silent, "{things}");
+            assert_eq!(verdict_on(things), Verdict::Silent, "{things}");
         }
         // These speak for a room, but not alone.
         for things in ["refrigerator", "couch, coffee table", "kitchen cabinet, sink", "door mat"] {
-            assert_eq!(told(things), Verdict::Doubtful, "{things}");
+            assert_eq!(verdict_on(things), Verdict::Doubtful, "{things}");
         }
     }
 }

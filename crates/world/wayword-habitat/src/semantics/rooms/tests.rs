@@ -1,4 +1,4 @@
-//! Made-up rooms: floors and things, and where which room is.
+//! Tests with made-up rooms: which room an eye sees, for floors and things at given places.
 
 mod houses;
 
@@ -25,14 +25,14 @@ fn rooms(given: &[(&str, u32, [f64; 4], f64)]) -> Rooms {
     Rooms::of(&things, shell)
 }
 
-fn seen(rooms: &Rooms, x: f64, y: f64, turn_rad: f64) -> Option<&'static str> {
+fn name_seen(rooms: &Rooms, x: f64, y: f64, turn_rad: f64) -> Option<&'static str> {
     rooms.seen(DVec3::new(x, y, 1.5), Heading::new(turn_rad).unwrap())
 }
 
 const EAST: f64 = std::f64::consts::FRAC_PI_2;
 const WEST: f64 = 3.0 * EAST;
 
-/// A bedroom west of a bathroom, with a wall of 12 cm between them and a doorway in it, whose sill is the bedroom's.
+/// A bedroom west of a bathroom, with a wall of 12 cm between them. The sill of the doorway belongs to the bedroom.
 fn two_rooms() -> Vec<(&'static str, u32, [f64; 4], f64)> {
     vec![
         ("floor", 1, [0.0, 3.94, 0.0, 4.0], 0.0),
@@ -44,46 +44,46 @@ fn two_rooms() -> Vec<(&'static str, u32, [f64; 4], f64)> {
 }
 
 #[test]
-fn the_floor_says_in_which_room_an_eye_is() {
+fn the_floor_decides_in_which_room_an_eye_is() {
     let rooms = rooms(&two_rooms());
-    assert_eq!(seen(&rooms, 1.0, 1.0, EAST), Some("bedroom"));
-    assert_eq!(seen(&rooms, 6.0, 1.0, EAST), Some("bathroom"));
-    // Nothing is known above another storey's ceiling, or far outside.
+    assert_eq!(name_seen(&rooms, 1.0, 1.0, EAST), Some("bedroom"));
+    assert_eq!(name_seen(&rooms, 6.0, 1.0, EAST), Some("bathroom"));
+    // Above another storey's ceiling and far outside, the room is not known.
     assert_eq!(rooms.seen(DVec3::new(1.0, 1.0, 4.5), Heading::NORTH), None);
-    assert_eq!(seen(&rooms, 20.0, 1.0, EAST), None);
+    assert_eq!(name_seen(&rooms, 20.0, 1.0, EAST), None);
 }
 
 #[test]
 fn in_an_opening_the_room_ahead_is_seen_and_never_one_behind_a_wall() {
     let rooms = rooms(&two_rooms());
     for x in [3.85, 4.0, 4.15] {
-        assert_eq!(seen(&rooms, x, 2.0, EAST), Some("bathroom"), "{x}");
-        assert_eq!(seen(&rooms, x, 2.0, WEST), Some("bedroom"), "{x}");
+        assert_eq!(name_seen(&rooms, x, 2.0, EAST), Some("bathroom"), "{x}");
+        assert_eq!(name_seen(&rooms, x, 2.0, WEST), Some("bedroom"), "{x}");
     }
-    // Along the wall it sees neither.
-    assert_eq!(seen(&rooms, 4.0, 2.0, 0.0), None);
-    assert_eq!(seen(&rooms, 3.5, 2.0, 0.0), Some("bedroom"));
-    assert_eq!(seen(&rooms, 3.5, 2.0, EAST), Some("bedroom"));
-    assert_eq!(seen(&rooms, 3.85, 0.5, EAST), Some("bedroom"));
+    // An eye that looks along the wall sees neither.
+    assert_eq!(name_seen(&rooms, 4.0, 2.0, 0.0), None);
+    assert_eq!(name_seen(&rooms, 3.5, 2.0, 0.0), Some("bedroom"));
+    assert_eq!(name_seen(&rooms, 3.5, 2.0, EAST), Some("bedroom"));
+    assert_eq!(name_seen(&rooms, 3.85, 0.5, EAST), Some("bedroom"));
 }
 
 #[test]
 fn a_hole_in_the_floor_and_a_missing_floor_are_bridged() {
     let hole = rooms(&[("floor", 1, [0.0, 1.0, 0.0, 4.0], 0.0), ("bed", 1, [0.0, 1.0, 0.0, 1.0], 0.5)]);
-    assert_eq!(seen(&hole, 1.2, 2.0, EAST), Some("bedroom"));
-    assert_eq!(seen(&hole, 2.2, 2.0, EAST), None);
+    assert_eq!(name_seen(&hole, 1.2, 2.0, EAST), Some("bedroom"));
+    assert_eq!(name_seen(&hole, 2.2, 2.0, EAST), None);
     let roofed = rooms(&[("ceiling", 1, [0.0, 4.0, 0.0, 4.0], 2.6), ("bed", 1, [0.0, 1.0, 0.0, 1.0], 0.5)]);
-    assert_eq!(seen(&roofed, 2.0, 2.0, EAST), Some("bedroom"));
+    assert_eq!(name_seen(&roofed, 2.0, 2.0, EAST), Some("bedroom"));
 }
 
 #[test]
 fn stairs_are_stairs_unless_their_room_has_a_name() {
     let stairs = ("stairs", 1, [0.0, 1.0, 0.0, 4.0], 0.3);
-    assert_eq!(seen(&rooms(&[stairs]), 0.5, 2.0, EAST), Some("stairs"));
+    assert_eq!(name_seen(&rooms(&[stairs]), 0.5, 2.0, EAST), Some("stairs"));
     let roof = ("ceiling", 1, [0.0, 4.0, 0.0, 4.0], 2.6);
     let within =
         [stairs, roof, ("couch", 1, [3.0, 4.0, 0.0, 1.0], 0.5), ("coffee table", 1, [3.0, 4.0, 1.5, 2.0], 0.4)];
-    assert_eq!(seen(&rooms(&within), 0.5, 2.0, EAST), Some("living room"));
+    assert_eq!(name_seen(&rooms(&within), 0.5, 2.0, EAST), Some("living room"));
 }
 
 /// A floor of 8 x 1.3 m with three rooms north of it, to which doors lead.
@@ -101,19 +101,19 @@ fn hall(roof: &'static str, third: &'static str) -> Vec<(&'static str, u32, [f64
 
 #[test]
 fn a_hallway_is_long_and_leads_to_rooms() {
-    assert_eq!(seen(&rooms(&hall("ceiling", "toilet")), 1.0, 0.6, EAST), Some("hallway"));
-    // A balcony has no ceiling, or no bathroom beside it.
-    assert_eq!(seen(&rooms(&hall("awning", "toilet")), 1.0, 0.6, EAST), None);
-    assert_eq!(seen(&rooms(&hall("ceiling", "chair")), 1.0, 0.6, EAST), None);
+    assert_eq!(name_seen(&rooms(&hall("ceiling", "toilet")), 1.0, 0.6, EAST), Some("hallway"));
+    // A balcony has no ceiling, or no bathroom at its side.
+    assert_eq!(name_seen(&rooms(&hall("awning", "toilet")), 1.0, 0.6, EAST), None);
+    assert_eq!(name_seen(&rooms(&hall("ceiling", "chair")), 1.0, 0.6, EAST), None);
     let mut two_doors = hall("ceiling", "toilet");
     two_doors.remove(4);
-    assert_eq!(seen(&rooms(&two_doors), 1.0, 0.6, EAST), None);
-    // Things that speak for another room.
+    assert_eq!(name_seen(&rooms(&two_doors), 1.0, 0.6, EAST), None);
+    // A thing in it suggests another room.
     let mut doubtful = hall("ceiling", "toilet");
     doubtful.push(("couch", 0, [0.0, 1.0, 0.0, 0.5], 0.5));
-    assert_eq!(seen(&rooms(&doubtful), 1.0, 0.6, EAST), None);
+    assert_eq!(name_seen(&rooms(&doubtful), 1.0, 0.6, EAST), None);
     // No walls: the room goes on.
     let mut open = hall("ceiling", "toilet");
     open.push(("floor", 2, [0.0, 8.0, -2.0, 0.0], 0.0));
-    assert_eq!(seen(&rooms(&open), 1.0, 0.6, EAST), None);
+    assert_eq!(name_seen(&rooms(&open), 1.0, 0.6, EAST), None);
 }

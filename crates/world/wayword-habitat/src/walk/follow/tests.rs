@@ -1,3 +1,5 @@
+//! Tests of the follower on small navmeshes: the actions are replayed, and have to end at the last place.
+
 use super::*;
 use crate::ground::tests::{paved, ring, two_storeys};
 use proptest::prelude::*;
@@ -8,7 +10,7 @@ fn place(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Replays a walk, and gives where it ends.
+/// Replays a walk, and returns the place where it ends.
 fn ends(ground: &Ground, walked: &Walked, gait: Gait) -> DVec3 {
     let told: Vec<Stance> = replay(ground, walked.stances[0], &walked.actions, gait).map(Option::unwrap).collect();
     assert_eq!(told[..walked.stances.len()], walked.stances);
@@ -58,7 +60,7 @@ fn a_walk_up_a_ramp_ends_a_storey_higher() {
 }
 
 #[test]
-fn what_blocks_a_walk_is_told_with_its_place() {
+fn follow_reports_the_place_that_blocks_a_walk() {
     let ground = Ground::new(&paved(&ring()));
     let nowhere = follow(&ground, &[place(0.5, 0.5, 0.0), place(40.0, 0.0, 0.0)], Heading::NORTH, Gait::default(), 0.2);
     assert!(nowhere.unwrap_err().to_string().starts_with("place 1 of the walk: there is no walkable ground"));

@@ -1,5 +1,5 @@
-//! How well the names agree with the plans of generated houses, which are saved with numbers of rooms and read back.
-//! `WAYWORD_ROOM_HOUSES=40` measures more houses; with `--nocapture` the figures are printed.
+//! Measures how well the names agree with the plans of generated houses. The houses are saved with numbered rooms and
+//! read back. `WAYWORD_ROOM_HOUSES=40` measures more houses, and `--nocapture` prints the figures.
 
 use super::super::super::{SemanticFiles, Semantics, load};
 use crate::scene::Stage;
@@ -10,13 +10,13 @@ use wayword_house::{EYE_M, Ground, HouseOptions, HousePlatform, generate, save, 
 /// Distance of the places at which rooms are compared, metres.
 const APART_M: f64 = 0.6;
 
-/// How often rooms of one kind were named.
+/// How often rooms of one kind got a name, and the right one.
 #[derive(Debug, Default)]
 struct Count {
     all: usize,
     named: usize,
     right: usize,
-    /// Named wrongly where the eye stands in no opening between two rooms.
+    /// Wrong names where the eye is not in an opening between two rooms.
     wrong_inside: usize,
 }
 
@@ -28,7 +28,7 @@ fn read_back(seed: u64) -> Semantics {
     load(&files, Stage::of(&saved.stage).unwrap().habitat_from_asset).unwrap().unwrap()
 }
 
-/// Eyes at viewpoints, and over the ground of all storeys.
+/// Eyes at the viewpoints of a house, and at regular places over the ground of all storeys.
 fn eyes(seed: u64) -> Vec<DVec3> {
     let house = generate(seed);
     let ground = Ground::of(&house);
@@ -57,7 +57,7 @@ fn counted(seeds: std::ops::Range<u64>) -> BTreeMap<String, Count> {
                 let frame = Frame { pose: Pose::level(eye, heading), viewpoint: None, level: None };
                 let view = platform.look_without_picture(&scene, &frame, Gaze::quarter(heading)).unwrap();
                 let room = view.ground_truth().unwrap().room.clone().unwrap();
-                // Two words for one thing.
+                // The house has another word for the same thing.
                 if room == "staircase" { "stairs".to_owned() } else { room }
             });
             // In an opening the house names the room ahead.
@@ -75,7 +75,7 @@ fn counted(seeds: std::ops::Range<u64>) -> BTreeMap<String, Count> {
     counts
 }
 
-/// Beside an opening the two may differ in where it ends: a sill belongs to one of its rooms.
+/// Near an opening the names may differ, because a sill belongs to one of the two rooms.
 #[test]
 fn rooms_of_houses_are_named_as_in_their_plans() {
     let houses = std::env::var("WAYWORD_ROOM_HOUSES").ok().and_then(|houses| houses.parse().ok());

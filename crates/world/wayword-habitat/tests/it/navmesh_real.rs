@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod oracles;
-
 use wayword_core::{DVec3, Path, rng};
 use wayword_habitat::{
     Ground, NavMesh, NavMeshSettings,
@@ -16,7 +14,7 @@ use wayword_render::Mesh;
 
 #[test]
 fn every_navmesh_of_habitat_is_written_back_byte_for_byte() {
-    for file in oracles::navmeshes() {
+    for file in crate::oracles::navmeshes() {
         let bytes = std::fs::read(&file).unwrap();
         let mesh = NavMesh::from_bytes(&bytes).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
         assert_eq!(mesh.version(), 2);
@@ -27,16 +25,16 @@ fn every_navmesh_of_habitat_is_written_back_byte_for_byte() {
 
 /// The corners of Habitat's way, in Wayword's frame.
 fn corners(points: &serde_json::Value) -> Vec<DVec3> {
-    points.as_array().unwrap().iter().map(oracles::place).collect()
+    points.as_array().unwrap().iter().map(crate::oracles::place).collect()
 }
 
 #[test]
 fn geodesics_along_habitats_own_trajectories_agree_to_a_millimetre() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     for name in ["traj_flat_a", "traj_simple_room"] {
         let folder = folder.join("habitat_frames").join(name);
         let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
-        let trajectory = oracles::json(&folder.join("trajectory.json"));
+        let trajectory = crate::oracles::json(&folder.join("trajectory.json"));
         let expected = corners(&trajectory["path_points"]);
         let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
         let length_m = trajectory["geodesic_distance"].as_f64().unwrap();
@@ -51,11 +49,11 @@ fn geodesics_along_habitats_own_trajectories_agree_to_a_millimetre() {
 
 #[test]
 fn frames_stand_where_those_of_the_trajectories_do() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     for name in ["traj_flat_a", "traj_simple_room"] {
         let folder = folder.join("habitat_frames").join(name);
         let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("scene.navmesh")).unwrap()).unwrap());
-        let trajectory = oracles::json(&folder.join("trajectory.json"));
+        let trajectory = crate::oracles::json(&folder.join("trajectory.json"));
         let expected = corners(&trajectory["path_points"]);
         let way = ground.geodesic(expected[0], *expected.last().unwrap()).unwrap();
         let frames = trajectory["frames"].as_array().unwrap();
@@ -66,7 +64,7 @@ fn frames_stand_where_those_of_the_trajectories_do() {
         let rotation = std::array::from_fn(|at| frames[0]["rotation_wxyz"][at].as_f64().unwrap());
         assert!((ours - forward_from_habitat_rotation(rotation)).length() < 1e-3);
         for (stop, frame) in stops.iter().zip(frames) {
-            let eye = oracles::place(&frame["agent_position"]) + DVec3::Z * EYE_M;
+            let eye = crate::oracles::place(&frame["agent_position"]) + DVec3::Z * EYE_M;
             assert!(stop.position.distance(eye) < 2e-3, "{} {eye}", stop.position);
         }
     }
@@ -74,40 +72,40 @@ fn frames_stand_where_those_of_the_trajectories_do() {
 
 #[test]
 fn geodesics_and_area_agree_with_habitats_path_finder() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_navmesh");
     let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(folder.join("rooms.navmesh")).unwrap()).unwrap());
-    let rooms = oracles::json(&folder.join("rooms.json"));
+    let rooms = crate::oracles::json(&folder.join("rooms.json"));
     let area_m2 = rooms["area"].as_f64().unwrap();
     println!("area {} of {area_m2} m2", ground.area_m2());
     assert!((ground.area_m2() / area_m2 - 1.0).abs() < 1e-4);
     for path in rooms["paths"].as_array().unwrap() {
-        let way = ground.geodesic(oracles::place(&path["start"]), oracles::place(&path["end"])).unwrap();
+        let way = ground.geodesic(crate::oracles::place(&path["start"]), crate::oracles::place(&path["end"])).unwrap();
         let length_m = path["geodesic"].as_f64().unwrap();
         println!("{} of {length_m} m", way.length_m);
         assert!((way.length_m / length_m - 1.0).abs() < 0.01, "{way:?}");
     }
 }
 
-/// A box whose faces point outwards, in Wayword's frame.
+/// A box with faces that point outwards, in Wayword's frame.
 fn solid(ends: [[f32; 3]; 2]) -> Mesh {
-    let (corners, triangles) = oracles::solid(ends);
+    let (corners, triangles) = crate::oracles::solid(ends);
     let place = |corner: [f32; 3]| wayword_from_habitat(glam::Vec3::from(corner).as_dvec3()).as_vec3();
     Mesh { positions: corners.into_iter().map(place).collect(), triangles, ..Mesh::default() }
 }
 
 #[test]
 fn a_navmesh_baked_with_the_default_settings_is_habitats() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_navmesh");
-    let model = Model { meshes: oracles::ROOMS.map(solid).to_vec(), ..Model::default() };
+    let model = Model { meshes: crate::oracles::ROOMS.map(solid).to_vec(), ..Model::default() };
     let ground = Ground::new(&bake(&model, &NavMeshSettings::default()).unwrap());
-    let rooms = oracles::json(&folder.join("rooms.json"));
+    let rooms = crate::oracles::json(&folder.join("rooms.json"));
     let area_m2 = rooms["area"].as_f64().unwrap();
     println!("baked area {} of {area_m2} m2", ground.area_m2());
     assert!((ground.area_m2() / area_m2 - 1.0).abs() < 0.03);
     for path in rooms["paths"].as_array().unwrap() {
-        let way = ground.geodesic(oracles::place(&path["start"]), oracles::place(&path["end"])).unwrap();
+        let way = ground.geodesic(crate::oracles::place(&path["start"]), crate::oracles::place(&path["end"])).unwrap();
         let length_m = path["geodesic"].as_f64().unwrap();
         println!("baked {} of {length_m} m", way.length_m);
         assert!((way.length_m / length_m - 1.0).abs() < 0.01, "{way:?}");
@@ -116,7 +114,7 @@ fn a_navmesh_baked_with_the_default_settings_is_habitats() {
 
 #[test]
 fn places_and_viewpoints_lie_on_the_largest_island() {
-    for file in oracles::navmeshes() {
+    for file in crate::oracles::navmeshes() {
         let ground = Ground::new(&NavMesh::from_bytes(&std::fs::read(&file).unwrap()).unwrap());
         let mut rng = rng(7, &["places"]);
         for _ in 0..200 {

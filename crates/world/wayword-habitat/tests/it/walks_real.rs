@@ -3,8 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may fail and tell as tests do")]
 
-mod oracles;
-
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -30,7 +28,7 @@ fn scenes(folder: &Path, written: &Path) -> Vec<Oracle> {
     let frames = folder.join("habitat_frames");
     let navmesh = |name: &str| Some(frames.join(name).join("scene.navmesh"));
     let rooms = written.join("rooms.stage_config.json");
-    oracles::write_rooms(&rooms);
+    crate::oracles::write_rooms(&rooms);
     let flat = || frames.join("flat.stage_config.json");
     vec![
         Oracle { name: "flat", stage: flat(), navmesh: navmesh("traj_flat_a"), area_m2: 43.5 },
@@ -60,7 +58,7 @@ const WALKS: u64 = 200;
 
 #[test]
 fn every_frame_of_a_walk_stands_on_a_storey_with_headroom() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let written = tempfile::tempdir().unwrap();
     for oracle in scenes(&folder, written.path()) {
         let name = oracle.name;
@@ -91,7 +89,7 @@ fn every_frame_of_a_walk_stands_on_a_storey_with_headroom() {
 
 #[test]
 fn an_island_that_is_asked_for_is_walked_on_even_if_it_is_a_roof() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let written = tempfile::tempdir().unwrap();
     let flat = scenes(&folder, written.path()).remove(0);
     let geometry = Geometry::of(&flat.stage);
@@ -113,7 +111,7 @@ type Measure = dyn Fn(DVec3, DVec3) -> Way;
 
 #[test]
 fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let written = tempfile::tempdir().unwrap();
     let at = |scene: &str, number: usize| {
         let oracle = scenes(&folder, written.path()).remove(number);
@@ -125,13 +123,13 @@ fn ways_are_as_long_as_habitats_and_straight_between_their_corners() {
     let mut expected: Vec<(Box<Measure>, DVec3, DVec3, f64)> = Vec::new();
     for (name, number) in [("flat", 0), ("simple_room", 2)] {
         let file = format!("habitat_frames/traj_{}/trajectory.json", if number == 0 { "flat_a" } else { name });
-        let told = oracles::json(&folder.join(file));
+        let told = crate::oracles::json(&folder.join(file));
         let points = told["path_points"].as_array().unwrap();
-        let (from, to) = (oracles::place(&points[0]), oracles::place(points.last().unwrap()));
+        let (from, to) = (crate::oracles::place(&points[0]), crate::oracles::place(points.last().unwrap()));
         expected.push((Box::new(at(name, number)), from, to, told["geodesic_distance"].as_f64().unwrap()));
     }
-    for path in oracles::json(&folder.join("habitat_navmesh/rooms.json"))["paths"].as_array().unwrap() {
-        let (from, to) = (oracles::place(&path["start"]), oracles::place(&path["end"]));
+    for path in crate::oracles::json(&folder.join("habitat_navmesh/rooms.json"))["paths"].as_array().unwrap() {
+        let (from, to) = (crate::oracles::place(&path["start"]), crate::oracles::place(&path["end"]));
         expected.push((Box::new(at("rooms", 3)), from, to, path["geodesic"].as_f64().unwrap()));
     }
     for (way, from, to, length_m) in expected {
@@ -188,7 +186,7 @@ impl Geometry {
         large.filter(|height_m| !self.is_roof(*height_m)).collect()
     }
 
-    /// Whether nothing of the scene lies more than 0.5 m above a height, and something more than 1.8 m below it.
+    /// Whether no part of the scene lies more than 0.5 m above a height, and a part more than 1.8 m below it.
     fn is_roof(&self, height_m: f64) -> bool {
         let heights = || self.triangles.iter().flatten().map(|corner| corner.z);
         !heights().any(|z| z > height_m + 0.5) && heights().any(|z| z < height_m - 1.8)

@@ -44,7 +44,7 @@ pub(crate) fn place(point: &serde_json::Value) -> DVec3 {
 pub(crate) const ROOMS: [[[f32; 3]; 2]; 3] =
     [[[-5.0, -0.1, -4.0], [5.0, 0.0, 4.0]], [[-0.1, 0.0, -4.0], [0.1, 2.5, 2.8]], [[2.0, 0.0, -1.0], [3.0, 1.0, 1.0]]];
 
-/// The corners of a box in Habitat's frame, and its triangles, whose faces point outwards.
+/// The corners of a box in Habitat's frame, and its triangles; their faces point outwards.
 pub(crate) fn solid([low, high]: [[f32; 3]; 2]) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let corner = |n: usize| std::array::from_fn(|axis| [low, high][n >> axis & 1][axis]);
     let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];

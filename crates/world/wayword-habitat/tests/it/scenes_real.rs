@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests may fail and tell as tests do")]
 
-mod oracles;
-
 use wayword_core::{DVec3, Gaze, PathRequest, Platform, rng};
 use wayword_habitat::{Ground, HabitatOptions, HabitatPlatform};
 
@@ -13,7 +11,7 @@ const SCENES: [(&str, f64); 3] =
 
 #[test]
 fn scenes_without_navmesh_are_baked_walked_and_seen() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     for (name, units) in SCENES {
         let file = folder.join("../scenes").join(name).canonicalize().unwrap();
         let configs = tempfile::tempdir().unwrap();

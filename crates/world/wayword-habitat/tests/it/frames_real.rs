@@ -3,8 +3,6 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail as tests do")]
 
-mod oracles;
-
 use wayword_core::DVec3;
 use wayword_habitat::{
     Ground, NavMesh,
@@ -19,7 +17,7 @@ const PIXELS: f64 = 640.0 * 480.0;
 
 #[test]
 fn every_frame_of_habitat_is_drawn_the_same() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_frames");
     for (name, stage) in [("traj_flat_a", "flat.glb"), ("traj_simple_room", "simple_room.stage_config.json")] {
         let mut model = Model::of(&Stage::of(&folder.join(stage)).unwrap()).unwrap();
@@ -29,7 +27,7 @@ fn every_frame_of_habitat_is_drawn_the_same() {
             mesh.id = 1;
         }
         let scene = Scene::new(model.meshes, model.materials, model.textures).unwrap();
-        let trajectory = oracles::json(&folder.join(name).join("trajectory.json"));
+        let trajectory = crate::oracles::json(&folder.join(name).join("trajectory.json"));
         for frame in trajectory["frames"].as_array().unwrap() {
             let ours = draw(&scene, frame);
             let open = |file: &str| image::open(folder.join(name).join(frame[file].as_str().unwrap())).unwrap();
@@ -61,7 +59,7 @@ fn every_frame_of_habitat_is_drawn_the_same() {
 
 fn draw(scene: &Scene, frame: &serde_json::Value) -> Picture {
     let number = |field: &str, at: usize| frame[field][at].as_f64().unwrap();
-    let eye = oracles::place(&frame["agent_position"]) + DVec3::Z * EYE_M;
+    let eye = crate::oracles::place(&frame["agent_position"]) + DVec3::Z * EYE_M;
     let forward = forward_from_habitat_rotation(std::array::from_fn(|at| number("rotation_wxyz", at)));
     // 90 degrees wide.
     let vertical_fov_rad = 2.0 * libm::atan(0.75);
@@ -69,7 +67,7 @@ fn draw(scene: &Scene, frame: &serde_json::Value) -> Picture {
 }
 
 /// The median difference in millimetres, and the number of pixels with a difference of more than 2 mm. A pixel that
-/// shows nothing has depth 0.
+/// shows no surface has depth 0.
 fn depths(ours_m: &[f32], theirs_mm: &[u16]) -> (f64, usize) {
     let ours_mm = ours_m.iter().map(|metres| if metres.is_finite() { f64::from(*metres) * 1000.0 } else { 0.0 });
     let mut apart: Vec<f64> = ours_mm.zip(theirs_mm).map(|(ours, theirs)| (ours - f64::from(*theirs)).abs()).collect();
@@ -79,7 +77,7 @@ fn depths(ours_m: &[f32], theirs_mm: &[u16]) -> (f64, usize) {
 
 #[test]
 fn a_baked_navmesh_has_the_area_of_habitats_own() {
-    let Some(folder) = oracles::folder() else { return };
+    let Some(folder) = crate::oracles::folder() else { return };
     let folder = folder.join("habitat_frames");
     for (name, stage) in [("traj_flat_a", "flat.glb"), ("traj_simple_room", "simple_room.stage_config.json")] {
         let theirs = NavMesh::from_bytes(&std::fs::read(folder.join(name).join("scene.navmesh")).unwrap()).unwrap();

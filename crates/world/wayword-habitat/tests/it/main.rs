@@ -1,0 +1,7 @@
+//! The integration tests of `wayword-habitat`, one program: a module for each topic.
+
+mod frames_real;
+mod navmesh_real;
+mod oracles;
+mod scenes_real;
+mod walks_real;
