@@ -1,10 +1,10 @@
-//! Conventions of recorded poses, and how they are turned into Wayword's: metres, z up, north is +y.
+//! Conventions of recorded poses, and their conversion into Wayword's: metres, z up, north is +y.
 
 use serde::Deserialize;
 use std::f64::consts::FRAC_PI_2;
 use wayword_core::{DVec3, Heading};
 
-/// Which way is up in the world of a recording's poses.
+/// The direction that is up in the world of a recording's poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum World {
@@ -16,7 +16,7 @@ pub(crate) enum World {
     YDown,
 }
 
-/// Which body the orientation of a pose belongs to.
+/// The body to which the orientation of a pose belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Body {
@@ -28,12 +28,12 @@ pub(crate) enum Body {
     OpenGl,
 }
 
-/// How the poses of a recording are to be read.
+/// The conventions by which the poses of a recording are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axes {
     pub(crate) world: World,
     pub(crate) body: Body,
-    /// How far the camera looks to the right of the direction ahead of `body`, radians.
+    /// Angle from the direction ahead of `body` to the camera's view direction, clockwise, radians.
     pub(crate) mount_rad: f64,
 }
 
@@ -53,8 +53,8 @@ impl Axes {
         }
     }
 
-    /// Where the camera looks, in the horizontal plane of Wayword's frame, by a quaternion (x, y, z, w); `None` where
-    /// it looks straight up or down, or the quaternion is invalid.
+    /// The camera's heading in Wayword's frame by a quaternion (x, y, z, w); `None` if the camera looks straight up or down,
+    /// or the quaternion is invalid.
     pub(crate) fn heading(self, recorded_from_body: [f64; 4]) -> Option<Heading> {
         self.heading_along(rotated(recorded_from_body, self.ahead())?)
     }

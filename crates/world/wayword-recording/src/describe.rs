@@ -1,5 +1,4 @@
-//! What a user says about a recording in a file of its own: `recording.toml` in a folder, `NAME.toml` beside
-//! `NAME.mp4`.
+//! Reads the user's description of a recording: `recording.toml` in a folder, or `NAME.toml` for `NAME.mp4`.
 
 use crate::axes::{Axes, Body, World};
 use serde::Deserialize;
@@ -14,7 +13,7 @@ const MAX_FILE_BYTES: u64 = 1 << 20;
 pub(crate) const FILE: &str = "recording.toml";
 pub(crate) const HINT: &str = "docs/RECORDINGS.md lists what a recording.toml can say";
 
-/// What a user says about a recording; everything has a default.
+/// A user's description of a recording. Everything has a default.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct Description {
@@ -22,13 +21,13 @@ pub(crate) struct Description {
     pub(crate) horizontal_fov_deg: Option<f64>,
     /// The camera, where there are several: a ROS topic, or a feature of a LeRobot dataset.
     pub(crate) camera: Option<String>,
-    /// Where poses are: a ROS topic, a feature of a LeRobot dataset, or a file beside the pictures.
+    /// The source of poses: a ROS topic, a feature of a LeRobot dataset, or a file in the pictures' folder.
     pub(crate) poses: Option<String>,
-    /// Which way is up in the world of the poses.
+    /// The direction that is up in the world of the poses.
     pub(crate) world: Option<World>,
-    /// Which body the orientation of a pose belongs to.
+    /// The body to which the orientation of a pose belongs.
     pub(crate) orientation: Option<Body>,
-    /// How far the camera looks to the right of the direction ahead of `orientation`, degrees.
+    /// Angle from the direction ahead of `orientation` to the camera's view direction, clockwise, degrees.
     pub(crate) mount_deg: Option<f64>,
     /// Pictures per second, for pictures without times.
     pub(crate) pictures_per_s: Option<f64>,
@@ -39,7 +38,7 @@ pub(crate) struct Description {
 }
 
 impl Description {
-    /// Reads a description; the default where there is no such file.
+    /// Reads a description; the default if the file does not exist.
     ///
     /// # Errors
     /// When it is not TOML, has an unknown key, or a number is out of range.
@@ -61,7 +60,7 @@ impl Description {
         Ok(described)
     }
 
-    /// Reads the description that lies beside a file.
+    /// Reads the description of a file from the same folder.
     ///
     /// # Errors
     /// As [`Description::read`].
@@ -70,15 +69,14 @@ impl Description {
         Self::read(&Self::file_beside(recording))
     }
 
-    /// Where the description of a file is looked for: `NAME.toml` beside `NAME.mp4`, else `recording.toml` in the same
-    /// folder.
+    /// The path of a file's description: `NAME.toml` for `NAME.mp4` if it exists, else `recording.toml` in the same folder.
     #[cfg(any(feature = "mcap", feature = "video"))]
     pub(crate) fn file_beside(recording: &Path) -> PathBuf {
         let own = recording.with_extension("toml");
         if own.is_file() { own } else { recording.with_file_name(FILE) }
     }
 
-    /// How to read poses whose format usually has the axes `usual`: what the user set replaces these.
+    /// The axes of poses: the user's settings, and for the others `usual`, those of the format.
     pub(crate) fn axes(&self, usual: Axes) -> Axes {
         Axes {
             world: self.world.unwrap_or(usual.world),
@@ -100,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_wins_over_what_is_usual() {
+    fn described_axes_replace_the_usual_axes() {
         let described = read("world = \"y-up\"\norientation = \"open-gl\"\nmount_deg = 90").unwrap();
         let axes = described.axes(Axes::of(Body::Robot));
         assert_eq!((axes.world, axes.body), (World::YUp, Body::OpenGl));
@@ -109,14 +107,14 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_meant_is_refused_by_name() {
+    fn description_refuses_values_out_of_range_by_name() {
         assert!(read("interval_m = 0").unwrap_err().contains("interval_m = 0"));
         assert!(read("horizontal_fov_deg = nan").unwrap_err().contains("horizontal_fov_deg"));
         assert!(read("interval = 1").unwrap_err().contains("interval"));
     }
 
     #[test]
-    fn without_a_file_nothing_is_said() {
+    fn a_missing_description_reads_as_the_default() {
         assert_eq!(Description::read(Path::new("/nowhere/recording.toml")).unwrap(), Description::default());
     }
 }

@@ -1,4 +1,4 @@
-//! A folder of pictures, with poses in a file beside them or without any.
+//! A recording that is a folder of pictures, with poses in a file of the same folder or without any.
 
 use crate::{
     describe::{self, Description, HINT},
@@ -16,7 +16,7 @@ use wayword_world::files;
 
 /// Subfolders in which datasets keep their pictures.
 pub(crate) const WITHIN: [&str; 6] = ["rgb", "images", "color", "frames", "data", "image_2"];
-/// Words in the names of pictures that datasets keep beside photographs.
+/// Words in the names of pictures that datasets have in addition to photographs.
 const NO_PHOTOGRAPHS: [&str; 6] = ["depth", "disparity", "mask", "normal", "segment", "semantic"];
 /// Endings of pictures that cannot be read.
 const UNREAD: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff", "bmp"];
@@ -24,7 +24,7 @@ const UNREAD: [&str; 8] = ["heic", "heif", "webp", "avif", "gif", "tif", "tiff",
 const LIST: &str = "rgb.txt";
 const MAX_LIST_BYTES: u64 = 64 << 20;
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
-/// Kinds of files that are read as pictures, whatever their names end in.
+/// Kinds of files that are read as pictures, whatever the endings of their names.
 const PICTURES: [&str; 2] = ["a PNG picture", "a JPEG picture"];
 const PICTURE_HINT: &str = "remove the picture, or replace it with an intact one";
 
@@ -55,7 +55,7 @@ impl Folder {
         Ok(None)
     }
 
-    /// The first file of a kind that lies among the pictures, and how many there are.
+    /// The first file of a kind among the pictures, and how many of them there are.
     pub(crate) fn beside_pictures(
         &self,
         is_wanted: fn(&str) -> bool,
@@ -64,8 +64,8 @@ impl Folder {
         Ok(names.next().map(|first| (self.pictures.join(first), 1 + names.count())))
     }
 
-    /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else one
-    /// after another.
+    /// Pictures with their times, seconds: from TUM's list, else from their names if all of these are times, else at
+    /// `pictures_per_s`.
     fn timed(&self, pictures_per_s: f64) -> Result<Vec<(f64, PathBuf)>, PlatformError> {
         let list = self.root.join(LIST);
         if let Some(text) = files::text_if_there(&list, MAX_LIST_BYTES, HINT)? {
@@ -147,7 +147,7 @@ impl Reel for Pictures {
     }
 }
 
-/// The error for a file whose first bytes show that it is not a PNG or JPEG picture; `None` where it may be one.
+/// The error for a file that is neither PNG nor JPEG by its first bytes; `None` if it may be one.
 fn unfit(file: &Path) -> Option<PlatformError> {
     let kind = Kind::at(file).filter(|kind| !PICTURES.contains(&kind.name))?;
     Some(files::wrong(file, format!("is {}, neither PNG nor JPEG", kind.name), kind.hint))
@@ -182,7 +182,7 @@ fn listed(text: &str, root: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
 
 fn is_picture(name: &str) -> bool {
     let ending = Path::new(name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    // macOS leaves "._x.jpg" beside "x.jpg" on foreign disks.
+    // macOS leaves "._x.jpg" next to "x.jpg" on foreign disks.
     !name.starts_with('.') && ["png", "jpg", "jpeg"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
@@ -198,14 +198,14 @@ fn is_no_photograph(name: &str) -> bool {
     NO_PHOTOGRAPHS.iter().any(|word| name.contains(word))
 }
 
-/// The names without depth maps and the like; all of them where nothing else is left.
+/// The names without depth maps and the like; all names if no photograph is among them.
 fn photographs(names: Vec<String>) -> Vec<String> {
     let photographs: Vec<String> = names.iter().filter(|name| !is_no_photograph(name)).cloned().collect();
     if photographs.is_empty() { names } else { photographs }
 }
 
-/// The time that a picture's name stands for, seconds: `1305031102.175304.png` is in seconds, `1403636579763555584.png`
-/// in nanoseconds. `None` where the name is a running number (`000012.png`).
+/// The time in a picture's name, seconds: `1305031102.175304.png` is in seconds, `1403636579763555584.png`
+/// in nanoseconds. `None` if the name is a running number (`000012.png`).
 fn time_of(name: &str) -> Option<f64> {
     let stem = Path::new(name).file_stem()?.to_str()?;
     let digits = stem.bytes().all(|byte| byte.is_ascii_digit());
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_of_tum_tells_times_and_files_below_the_folder() {
+    fn a_list_of_tum_gives_times_and_files_below_the_folder() {
         let folder = folder(&["rgb/a.png", "rgb/b.png"]);
         std::fs::write(folder.path().join("rgb.txt"), "# time file\n5.5 rgb/b.png\n6.5 rgb/a.png\n").unwrap();
         let recording = open(folder.path());

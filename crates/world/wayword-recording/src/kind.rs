@@ -1,4 +1,4 @@
-//! Names a file that cannot be read by its first bytes, and says how to convert it.
+//! Recognises files by their first bytes, to name a file that cannot be read and suggest how to convert it.
 
 use crate::names::entries;
 use std::{collections::BTreeMap, fs::File, io::Read, path::Path};
@@ -24,14 +24,14 @@ const HEAD_BYTES: u64 = 512;
 /// Most files of a folder that are looked into.
 const MOST_LOOKED_INTO: usize = 200;
 
-/// What a file is.
+/// The kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Kind {
     /// Its name with an article, to follow "is".
     pub(crate) name: &'static str,
-    /// What to do about it.
+    /// A way to use it, or to get an intact file.
     pub(crate) hint: &'static str,
-    /// Whether it holds pictures or a recording, rather than nothing of use.
+    /// Whether it holds pictures or a recording, and not something useless.
     pub(crate) is_recording: bool,
 }
 
@@ -194,7 +194,7 @@ pub(crate) fn unread(path: &Path, within: &[&str]) -> Result<Option<Unread>, Pla
     Ok(Some(Unread { what: told.collect::<Vec<_>>().join("; "), hint }))
 }
 
-/// The error for a file that is not what its name says: names what it is, or else gives the reader's reason.
+/// The error for a file with a misleading name: it names the true kind, or else gives the reader's reason.
 #[cfg(any(feature = "mcap", feature = "video"))]
 pub(crate) fn refusal(file: &Path, own: &str, (reason, hint): (String, &'static str)) -> PlatformError {
     match Kind::at(file).filter(|kind| kind.name != own) {
@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn no_command_copies_what_is_not_read() {
+    fn conversion_commands_encode_videos_again() {
         for (_, _, kind) in STARTS {
             assert!(!kind.hint.contains("copy "), "{}", kind.hint);
         }

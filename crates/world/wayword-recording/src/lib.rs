@@ -1,8 +1,8 @@
 //! Recordings of robots and phones: pictures in the order of their times, with or without poses.
 //!
-//! Every kind of recording (`folder`, `video`, `mcap`, `lerobot`) gives the same: times, pictures, and where the camera
-//! was if that is known (`reel`). All of them are then treated alike. `choose` picks frames at equal distances or times
-//! and leaves out blurred and repeated pictures. [`RecordingPlatform`] makes paths of these frames.
+//! Every kind of recording (`folder`, `video`, `mcap`, `lerobot`) provides the same: pictures, their times, and the track
+//! of the camera if it is known (`reel`). From then on all kinds are treated alike. `choose` picks frames at equal
+//! distances or times and leaves out blurred and repeated pictures. [`RecordingPlatform`] makes paths of these frames.
 
 mod axes;
 mod choose;

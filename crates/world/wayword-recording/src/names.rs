@@ -95,7 +95,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_order_of_names_is_one(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
+        fn in_order_is_a_total_order(mut names in prop::collection::vec("[a0-9]{0,5}", 3)) {
             names.sort_by(|a, b| in_order(a, b));
             prop_assert_ne!(in_order(&names[0], &names[2]), Ordering::Greater);
             prop_assert_eq!(in_order(&names[0], &names[1]), in_order(&names[1], &names[0]).reverse());

@@ -1,4 +1,4 @@
-//! Finds out what kind of recording lies under a path.
+//! Opens a path as a recording, of the kind that its contents have.
 
 #[cfg(any(feature = "lerobot", feature = "mcap", feature = "video"))]
 use crate::describe::Description;
@@ -16,8 +16,7 @@ use wayword_world::files;
 const HINT: &str =
     "give a folder of pictures (PNG, JPEG), a folder of recordings, a LeRobot dataset, or a .mp4 or .mcap file";
 
-/// Opens what lies under a path: one recording, or a folder that holds several. `hear` gets a line for each file that
-/// is skipped.
+/// Opens a path: one recording, or a folder with several. `hear` gets a line for each file that is skipped.
 pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, PlatformError> {
     if let Some(source) = one(path)? {
         return Ok(source);
@@ -26,7 +25,7 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
         return Err(no_recording(path));
     }
     let (mut sources, mut passed_over, mut broken) = (Vec::new(), Vec::new(), Vec::new());
-    // macOS leaves "._x.mp4" beside "x.mp4" on foreign disks, and file managers leave hidden folders of thumbnails.
+    // macOS leaves "._x.mp4" next to "x.mp4" on foreign disks, and file managers leave hidden folders of thumbnails.
     for entry in entries(path)?.into_iter().filter(|name| !name.starts_with('.')) {
         match one(&path.join(&entry)) {
             Ok(Some(source)) => sources.push(source),
@@ -68,7 +67,7 @@ pub(crate) fn open(path: &Path, hear: &dyn Fn(&str)) -> Result<Box<dyn Source>, 
     Ok(Box::new(Shelf { sources }))
 }
 
-/// Why there is no recording at a path that is not a folder.
+/// The error for a path that is no recording and no folder.
 fn no_recording(path: &Path) -> PlatformError {
     match Kind::at(path) {
         Some(kind) => {
@@ -94,7 +93,7 @@ fn one(path: &Path) -> Result<Option<Box<dyn Source>>, PlatformError> {
             return lerobot(path).map(Some);
         }
         let Some(folder) = Folder::open(path)? else { return Ok(None) };
-        // A picture may lie beside videos by chance, so the program does not guess which is meant.
+        // A picture may be among videos by chance, so the program does not guess which of them the user wants.
         if let Some((file, _)) = folder.beside_pictures(is_file_of_ours)? {
             let file = file.file_name().unwrap_or_default().display();
             let reason = format!("holds pictures and also recordings, such as {file}");
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn each_recording_of_a_folder_is_a_scene_and_what_is_hidden_is_none() {
+    fn open_skips_hidden_entries_of_a_folder_of_recordings() {
         let shelf = shelf(&["b/1.png", "a/rgb/1.png", ".small/1.png", "notes/1.txt"]);
         std::fs::write(shelf.path().join("._a.mp4"), "").unwrap();
         let scenes = open(shelf.path(), &|_| ()).map(|source| source.scenes()).unwrap();
@@ -191,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_beside_recordings_are_not_taken_for_what_is_meant() {
+    fn open_refuses_a_folder_with_pictures_and_recordings() {
         let shelf = shelf(&["map.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
         let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();
@@ -215,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_read_is_named_for_what_it_is_with_what_makes_something_of_it() {
+    fn open_names_unreadable_kinds_and_how_to_convert_them() {
         for (files, path, told) in [
             (
                 &[("1.heic", HEIC), ("2.heic", HEIC)][..],
@@ -247,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_passed_over_beside_recordings_is_told() {
+    fn open_reports_the_files_that_it_skips() {
         let shelf = shelf(&["a/1.png"]);
         std::fs::write(shelf.path().join("b.webm"), WEBM).unwrap();
         std::fs::create_dir(shelf.path().join("c")).unwrap();
@@ -268,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn who_asks_for_another_recording_is_told_which_there_are() {
+    fn an_unknown_recording_error_lists_the_known_ones() {
         let shelf = shelf(&["b/1.png", "a/1.png"]);
         let source = open(shelf.path(), &|_| ()).unwrap();
         let error = source.open(&SceneId::new("c").unwrap()).err().unwrap().to_string();
@@ -277,7 +276,7 @@ mod tests {
 
     #[cfg(feature = "video")]
     #[test]
-    fn no_recording_is_passed_over_because_another_has_its_name() {
+    fn open_refuses_two_recordings_with_one_name() {
         let shelf = shelf(&["walk/1.png"]);
         std::fs::write(shelf.path().join("walk.mp4"), "").unwrap();
         let error = open(shelf.path(), &|_| ()).err().unwrap().to_string();

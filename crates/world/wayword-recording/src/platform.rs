@@ -20,19 +20,19 @@ use wayword_core::{
 };
 use wayword_world::{files, said::Hear};
 
-/// Most recordings that are kept open.
+/// Most recordings that stay open.
 const OPEN: usize = 8;
-/// Most pictures that are kept in memory: 1.2 MB each at most.
+/// Most pictures that stay in memory: 1.2 MB each at most.
 const KEPT: usize = 256;
 /// Frames that are read together, because a video has to be decoded from a key picture on, whichever picture is wanted.
 const AHEAD: usize = 16;
-/// Larger pictures are scaled down until their longer side has this length, pixels: other platforms draw, and vision
-/// models take, pictures of about this size.
+/// Pictures are scaled down until their longer side has at most this length, pixels. Other platforms draw pictures of about
+/// this size, and vision models take them.
 const LONGEST_PX: u32 = 640;
-/// Horizontal field of view where neither the recording nor the user says it, radians: that of a robot's or phone's
-/// usual camera.
+/// Horizontal field of view if neither the recording nor the user gives it, radians: that of a robot's or phone's usual
+/// camera.
 const USUAL_FOV_RAD: f64 = 70.0 * std::f64::consts::PI / 180.0;
-/// A recording of so many frames or fewer is one path, however short or long it is.
+/// A recording with at most this many frames is one path, however short or long it is.
 pub(crate) const WHOLE: usize = 12;
 /// Most unreadable recordings that an error lists.
 const MOST_TOLD: usize = 3;
@@ -40,8 +40,8 @@ const HINT: &str = "record more, or set interval_m or interval_s in a recording.
 
 /// Folders of pictures, videos, MCAP files and LeRobot datasets.
 ///
-/// A scene is one recording. It can only be seen from where its pictures were taken, in the direction in which they
-/// were taken. It has no labels and no rooms.
+/// A scene is one recording. Views exist only at the places where its pictures were taken, and in the direction of these
+/// pictures. It has no labels and no rooms.
 pub struct RecordingPlatform {
     path: PathBuf,
     source: Box<dyn Source>,
@@ -51,13 +51,13 @@ pub struct RecordingPlatform {
     pictures: Recent<(SceneId, usize), Image>,
 }
 
-/// A recording whose frames have been chosen.
+/// An open recording with its chosen frames.
 struct Opened {
     recording: Recording,
     /// Numbers of the pictures that are frames, in order.
     stops: Vec<usize>,
     ids: Vec<ViewpointId>,
-    /// Where each frame was taken; empty where that is not known.
+    /// The place of each frame; empty if the poses are not known.
     places: Vec<DVec3>,
     /// Stops that cannot be reached from the one before.
     breaks: BTreeSet<usize>,
@@ -65,8 +65,7 @@ struct Opened {
 }
 
 impl RecordingPlatform {
-    /// Opens a recording, or a folder that holds several. `hear` gets a line about each recording when its frames are
-    /// chosen.
+    /// Opens a recording, or a folder with several. `hear` gets a line about each recording when its frames are chosen.
     ///
     /// # Errors
     /// When there is none, or this build cannot read its kind.
@@ -103,7 +102,7 @@ impl RecordingPlatform {
         })
     }
 
-    /// The picture of a frame. The pictures of the next frames are read with it.
+    /// The picture of a frame. The pictures of the next frames are read with it, and stay in memory.
     fn picture(&self, scene: &SceneId, opened: &Opened, at: usize) -> Result<Arc<Image>, PlatformError> {
         self.pictures.get_or_make((scene.clone(), opened.stops[at]), || {
             let wanted = &opened.stops[at..opened.stops.len().min(at + AHEAD)];
@@ -145,7 +144,7 @@ impl Opened {
         if self.recording.track.is_some() { Motion::Known } else { Motion::Unknown }
     }
 
-    /// Whether it has few frames, and no gap that no path crosses.
+    /// Whether it has few frames, and no gap in its track.
     fn is_short(&self) -> bool {
         self.stops.len() <= WHOLE && self.breaks.is_empty()
     }
@@ -164,7 +163,7 @@ impl Opened {
         Path::frames_along((first..=last).map(stop).collect(), self.looking(first))
     }
 
-    /// Where the camera looked when a frame was taken: as the track says, else along the path.
+    /// The camera's heading at a frame: from the track if it has one, else along the path.
     fn looking(&self, at: usize) -> Option<Heading> {
         let track = self.recording.track.as_ref()?;
         let along = || {
@@ -176,7 +175,7 @@ impl Opened {
     }
 
     /// First and last stop of a path that fits the request: the whole recording if it fits, else a stretch of it;
-    /// `None` where none fits. A short recording is taken whole, unless the request asks for another length than usual.
+    /// `None` if there is none. A short recording is taken whole, unless the request asks for another length than usual.
     fn stretch(&self, request: &PathRequest, dice: &mut impl Rng) -> Option<(usize, usize)> {
         let end = self.stops.len().checked_sub(1).filter(|end| *end > 0)?;
         if self.is_short() && *request == PathRequest::default() {
@@ -199,8 +198,8 @@ impl Opened {
         Some((first, dice.random_range(lasts(first))))
     }
 
-    /// The distance of each stop from the first along the path, and how far two may be apart: in metres, or in hops
-    /// without poses.
+    /// The distance of each stop from the first along the path, and the lengths that the request allows: in metres, or in
+    /// hops without poses.
     fn measured(&self, request: &PathRequest) -> (Vec<f64>, RangeInclusive<f64>) {
         if self.motion() == Motion::Unknown {
             let hops = (0..self.stops.len()).map(|at| at as f64).collect();
@@ -223,12 +222,12 @@ impl Platform for RecordingPlatform {
         Ok(self.source.scenes())
     }
 
-    /// Nobody knows how much the labels of a recording leave out.
+    /// It is not known how much the labels of a recording leave out.
     fn lists_everything(&self) -> bool {
         false
     }
 
-    /// Opens each recording and looks at its first picture, to report all errors before a run finds them item by item.
+    /// Opens each recording and reads its first picture, to report all errors before a run meets them item by item.
     fn check(&self, scenes: &BTreeSet<&SceneId>) -> Result<(), PlatformError> {
         let all = self.source.scenes();
         let known = scenes.iter().filter(|scene| all.binary_search(scene).is_ok());
@@ -250,7 +249,7 @@ impl Platform for RecordingPlatform {
         Err(files::wrong(&self.path, reason, "docs/RECORDINGS.md lists what can be read"))
     }
 
-    /// The frames in order, each joined to the next unless the way between them is not known; empty without poses.
+    /// The frames in order, each joined to the next unless the way between them is unknown; empty without poses.
     fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
         Ok(self.opened(scene)?.graph.clone())
     }
@@ -282,7 +281,7 @@ impl Platform for RecordingPlatform {
         Ok(Path { id: format!("{scene}_{seed}"), scene: scene.clone(), frames, target: None, motion: opened.motion() })
     }
 
-    /// The picture that was taken there, if it was taken in this direction; else a view without a picture.
+    /// The picture of this frame if the camera looked in this direction; else a view without a picture.
     fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let opened = self.opened(scene)?;
         let id = from.viewpoint.as_ref().ok_or_else(|| PlatformError::NotAViewpoint { scene: scene.clone() })?;
@@ -351,7 +350,7 @@ fn scaled(image: &Image) -> Image {
     small.and_then(|small| Image::new(wide, high, small.into_raw()).ok()).unwrap_or_else(|| image.clone())
 }
 
-/// A line that says how many frames were chosen, and what was left out and why.
+/// A line with the number of frames that were chosen, and of those that were left out, with the reasons.
 fn told(scene: &SceneId, recording: &Recording, choice: &Choice) -> String {
     let count = |count: usize, what: &str| if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") };
     let left_out = |places: usize, why: &str| match places {

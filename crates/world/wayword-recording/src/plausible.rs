@@ -1,9 +1,9 @@
-//! Whether poses are plausible with the axes they are read by: people and robots move on a level plane with their
-//! cameras upright.
+//! Checks whether poses are plausible with the axes by which they are read. People and robots move on a level plane with
+//! their cameras upright.
 //!
-//! Stairs climb at 35 degrees. A path that goes straight up again and again and hardly leaves a vertical plane was read
-//! in the wrong frame, or it is that of a drone or a lift. The program tells these apart by whether the cameras are
-//! upright. It does not question what the user set as `world` and `orientation` in a `recording.toml`.
+//! Stairs climb at 35 degrees. If a path goes straight up again and again and hardly leaves a vertical plane, it was read
+//! in the wrong axes, or it is the path of a drone or a lift. Whether the cameras are upright decides between the two. The
+//! user's settings `world` and `orientation` in a `recording.toml` are not questioned.
 
 use crate::{
     axes::{Axes, Body, World},
@@ -28,23 +28,23 @@ const UPRIGHT: f64 = 0.5;
 const MOSTLY: f64 = 0.9;
 /// Other axes are only suggested if the cameras are this upright on average with them (the cosine of 37 degrees).
 const WELL_UPRIGHT: f64 = 0.8;
-/// Least share of the poses that must say how the camera was held.
+/// Least share of the poses that must have an orientation.
 const TOLD: f64 = 0.8;
 
-/// A pose as it was written down.
+/// A pose as it was recorded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     pub(crate) position: DVec3,
-    /// recorded_from_body by its columns, where the pose says how the camera was held.
+    /// recorded_from_body by its columns, if the pose has an orientation.
     pub(crate) held: Option<[DVec3; 3]>,
 }
 
 /// Why poses are probably read with the wrong axes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Doubt {
-    /// With other axes all is well: the user has to say which are right.
+    /// With other axes the path is plausible: the user has to choose.
     Misread(String),
-    /// It is odd, but may be right.
+    /// The path is unusual, but may be right.
     Odd(String),
 }
 
@@ -57,7 +57,7 @@ impl Doubt {
     }
 }
 
-/// What is doubtful about poses, in the order of their times, if they are read with these axes.
+/// The doubt about poses, in the order of their times, if they are read with these axes.
 pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> Option<Doubt> {
     let walk = Walk::of(samples).filter(|walk| walk.length_m >= LEAST_M)?;
     let climbs = walk.climbs(axes.world) && !walk.is_level(axes.world);
@@ -79,7 +79,7 @@ pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> 
             changed(axes, meant),
             told(axes)
         );
-        // A drone may look straight down or go straight up, and a phone may be held on its side. Only both together are
+        // A drone may look straight down or go straight up, and a phone may be turned on its side. Only both together are
         // certain.
         let is_misread = climbs && stands == Some(false) && meant.world != axes.world;
         return Some(if is_misread { Doubt::Misread(words) } else { Doubt::Odd(words) });
@@ -97,7 +97,7 @@ pub(crate) fn doubt(samples: &[Sample], axes: Axes, described: &Description) -> 
     }
 }
 
-/// What is odd about positions alone: they keep to a plane that would be level in another world.
+/// The doubt about positions alone: they stay in a plane that would be level in another world.
 fn plane(walk: &Walk, axes: Axes, described: &Description) -> Option<Doubt> {
     let is_meant = |world: &World| *world != axes.world && walk.is_level(*world) && !walk.climbs(*world);
     let meant = [World::ZUp, World::YUp].into_iter().find(is_meant).filter(|_| described.world.is_none())?;
@@ -109,8 +109,8 @@ fn plane(walk: &Walk, axes: Axes, described: &Description) -> Option<Doubt> {
     )))
 }
 
-/// Other axes with which the cameras are upright and the path is level: those that differ least from the present ones,
-/// then those with which the camera looks where it goes.
+/// Other axes with which the cameras are upright and the path is level. Those that differ least from the present axes come
+/// first, then those with which the camera looks in the direction of movement.
 fn meant(walk: &Walk, axes: Axes, described: &Description) -> Option<Axes> {
     let worlds = [World::ZUp, World::YUp, World::YDown].into_iter();
     let worlds = worlds.filter(|world| *world == axes.world || described.world.is_none());
@@ -123,12 +123,12 @@ fn meant(walk: &Walk, axes: Axes, described: &Description) -> Option<Axes> {
     could.filter(fits).min_by(|a, b| changes(a).cmp(&changes(b)).then(walk.ahead(*b).total_cmp(&walk.ahead(*a))))
 }
 
-/// A path in the frame in which it was recorded.
+/// A path in the frame of its recording.
 struct Walk {
     /// At least a step apart.
     places: Vec<DVec3>,
     length_m: f64,
-    /// How the camera was held at those places; empty where too few poses say it.
+    /// Orientations at those places; empty if too few poses have one.
     held: Vec<[DVec3; 3]>,
 }
 
@@ -153,7 +153,7 @@ impl Walk {
         self.places.windows(2).map(|pair| pair[1] - pair[0])
     }
 
-    /// The vertical component of the camera's up direction, pose by pose; empty where too few poses say it.
+    /// The vertical component of the camera's up direction, pose by pose; empty if too few poses have an orientation.
     fn ups(&self, axes: Axes) -> impl Iterator<Item = f64> {
         self.held.iter().map(move |held| axes.wayword_from_recorded(along(held, axes.above())).z)
     }
@@ -163,18 +163,18 @@ impl Walk {
         (!self.held.is_empty()).then(|| self.ups(axes).sum::<f64>() / self.held.len() as f64)
     }
 
-    /// Whether the camera is upright in most of the poses; `None` where too few say it.
+    /// Whether the camera is upright in most of the poses; `None` if too few of them have an orientation.
     fn stands(&self, axes: Axes) -> Option<bool> {
         let upright = self.ups(axes).filter(|up| *up >= UPRIGHT).count();
         (!self.held.is_empty()).then_some(upright as f64 >= MOSTLY * self.held.len() as f64)
     }
 
-    /// How far the steps go in the direction in which the camera looks, metres.
+    /// Distance that the steps cover in the camera's view direction, metres.
     fn ahead(&self, axes: Axes) -> f64 {
         self.steps().zip(&self.held).map(|(step, held)| along(held, axes.ahead()).dot(step)).sum()
     }
 
-    /// Whether much of the path goes straight up or down.
+    /// Whether a large part of the path goes straight up or down.
     fn climbs(&self, world: World) -> bool {
         let up = up(world);
         let steep = self.steps().filter(|step| step.dot(up).abs() > STEEP * step.length());
@@ -185,7 +185,7 @@ impl Walk {
         self.steps().map(|step| step.dot(up(world)).abs()).sum()
     }
 
-    /// Whether the path keeps to a plane that is level in a world.
+    /// Whether the path stays in a plane that is level in a world.
     fn is_level(&self, world: World) -> bool {
         let low = self.places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = self.places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -216,7 +216,7 @@ fn told(axes: Axes) -> String {
     format!("world = \"{}\" and orientation = \"{}\"", axes.world.name(), axes.body.name())
 }
 
-/// The settings that differ between two sets of axes, as `recording.toml` has them.
+/// The settings that differ between two sets of axes, as they are written in `recording.toml`.
 fn changed(from: Axes, to: Axes) -> String {
     let world = (from.world != to.world).then(|| world_told(to.world));
     let body = (from.body != to.body).then(|| format!("orientation = \"{}\"", to.body.name()));

@@ -1,4 +1,4 @@
-//! What every kind of recording gives: pictures in the order of their times, and where the camera was.
+//! The common form of all kinds of recordings: pictures in the order of their times, and the track of the camera.
 
 use crate::{choose::wanted, describe::Description, track::Track};
 use std::path::PathBuf;
@@ -9,16 +9,16 @@ pub(crate) trait Source: Send + Sync {
     /// The recordings, sorted.
     fn scenes(&self) -> Vec<SceneId>;
 
-    /// Opens one of [`Source::scenes`]. Reads what is needed to know times and poses, but no pictures.
+    /// Opens one of [`Source::scenes`]. Reads its times and poses, but no pictures.
     ///
     /// # Errors
     /// When its files cannot be read.
     fn open(&self, scene: &SceneId) -> Result<Recording, PlatformError>;
 
-    /// The plain files that one of [`Source::scenes`] is read from, sorted: pictures, poses and what describes it.
+    /// The plain files that one of [`Source::scenes`] is read from, sorted: pictures, poses and its description.
     ///
     /// # Errors
-    /// When the program cannot find out which files these are.
+    /// When the program cannot determine these files.
     fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError>;
 
     /// Checks whether one of [`Source::scenes`] can be read: its index, and its first picture.
@@ -36,21 +36,21 @@ pub(crate) trait Source: Send + Sync {
 /// One recording of one camera.
 pub(crate) struct Recording {
     pub(crate) reel: Box<dyn Reel>,
-    /// Where the camera was; `None` where the recording does not say.
+    /// The poses of the camera; `None` if the recording has none.
     pub(crate) track: Option<Track>,
-    /// Horizontal field of view of its pictures, radians, where the recording itself says it.
+    /// Horizontal field of view of its pictures, radians, if the recording itself gives it.
     pub(crate) horizontal_fov_rad: Option<f64>,
-    /// What the user says about it.
+    /// The user's description of it.
     pub(crate) described: Description,
 }
 
-/// Takes a picture: its number, and the picture.
+/// Receives a picture with its number.
 pub(crate) type Take<'a> = dyn FnMut(usize, Image) -> Result<(), PlatformError> + 'a;
 
 /// The pictures of a recording, in the order of their times.
 pub(crate) trait Reel: Send + Sync {
-    /// When each picture was taken, seconds on the clock of the recording's track, in ascending order (equal times may
-    /// follow).
+    /// Times at which the pictures were taken, seconds on the clock of the recording's track, in ascending order. Equal times
+    /// may follow each other.
     fn times_s(&self) -> &[f64];
 
     /// The name of a picture, unique within the recording.
@@ -63,7 +63,7 @@ pub(crate) trait Reel: Send + Sync {
     /// When one cannot be read, or `take` fails.
     fn pictures(&self, wanted: &[usize], take: &mut Take<'_>) -> Result<(), PlatformError>;
 
-    /// Checks whether the wanted files are pictures, where that costs little.
+    /// Checks whether the wanted files are pictures, if that is cheap.
     ///
     /// # Errors
     /// When one is not a picture.

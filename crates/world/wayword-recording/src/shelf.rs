@@ -1,4 +1,4 @@
-//! Several recordings in one folder.
+//! A folder with several recordings, as one source.
 
 use crate::{
     names::unknown,
@@ -40,7 +40,7 @@ impl Source for Shelf {
     }
 }
 
-/// A recording that could not be opened with its folder. The error appears only when this recording is used.
+/// A recording that failed to open together with its folder. Its error is reported only when somebody uses this recording.
 pub(crate) struct Unopened {
     pub(crate) scene: SceneId,
     pub(crate) path: PathBuf,

@@ -1,4 +1,4 @@
-//! How large a picture of a camera can be: a file that claims a larger one is broken or malicious.
+//! Limits for the size of a camera's picture: a file that claims a larger one is broken or malicious.
 
 /// Longest side of a picture, pixels.
 const MAX_SIDE_PX: u32 = 12_288;

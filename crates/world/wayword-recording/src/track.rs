@@ -1,8 +1,8 @@
-//! Where the camera was, over time.
+//! The poses of the camera over time.
 
 use wayword_core::{DVec3, Heading};
 
-/// Longest time between two fixes between which the track is interpolated on a straight line, seconds.
+/// Longest time between two fixes over which the track is interpolated on a straight line, seconds.
 const MAX_GAP_S: f64 = 2.0;
 /// A fix also counts for times this far before the first fix, after the last, or into a gap, seconds: cameras and
 /// trackers do not start together.
@@ -10,14 +10,14 @@ const MAX_BEYOND_S: f64 = 0.1;
 /// Positions with a larger coordinate are invalid, metres: UTM counts up to ten million from the equator.
 const MAX_COORDINATE_M: f64 = 2e7;
 
-/// Where the camera was at one time, in Wayword's frame.
+/// The pose of the camera at one time, in Wayword's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fix {
-    /// On the clock of the pictures, seconds.
+    /// Time on the clock of the pictures, seconds.
     pub(crate) time_s: f64,
-    /// Of the camera, or of the robot that carries it, metres.
+    /// Position of the camera, or of the robot that carries it, metres.
     pub(crate) position: DVec3,
-    /// Where the camera looks, if that is known.
+    /// Direction in which the camera looks, if it is known.
     pub(crate) heading: Option<Heading>,
 }
 
@@ -58,8 +58,8 @@ impl Track {
         (time_s(self.fixes.first()), time_s(self.fixes.last()))
     }
 
-    /// Where the camera was at a time: on the straight line between two fixes that are at most [`MAX_GAP_S`] apart,
-    /// else at the nearest fix if it is at most [`MAX_BEYOND_S`] away; `None` otherwise.
+    /// The pose at a time: on the straight line between two fixes that are at most [`MAX_GAP_S`] apart, else at the nearest
+    /// fix if it is at most [`MAX_BEYOND_S`] away; `None` otherwise.
     pub(crate) fn at(&self, time_s: f64) -> Option<Fix> {
         let next = self.fixes.partition_point(|fix| fix.time_s < time_s);
         let (before, after) = (next.checked_sub(1).map(|at| self.fixes[at]), self.fixes.get(next).copied());
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_known_within_long_gaps_and_beyond_the_ends() {
+    fn track_has_no_fix_in_long_gaps_and_beyond_its_ends() {
         let track = Track::new(vec![fix(0.0, 0.0, 0.0), fix(10.0, 5.0, 0.0)]).unwrap();
         assert!(track.at(5.0).is_none() && track.at(-1.0).is_none() && track.at(11.0).is_none());
         assert_eq!(track.at(0.05).unwrap().position.x, 0.0);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_place_is_no_fix() {
+    fn track_drops_fixes_without_a_valid_position() {
         assert!(Track::new(vec![fix(0.0, f64::NAN, 0.0), fix(f64::NAN, 0.0, 0.0), fix(0.0, 1e9, 0.0)]).is_none());
         assert!(Track::new(vec![fix(0.0, 5.4e6, 0.0)]).is_some());
     }

@@ -1,8 +1,8 @@
-//! How sharp a picture is, and how much it differs from another.
+//! Measures how sharp a picture is, and how much it differs from another one.
 
 use wayword_core::Image;
 
-/// Size of the small grey picture by which pictures are compared, pixels.
+/// Size of the small grey copies that are compared, pixels.
 const WIDE: usize = 32;
 const HIGH: usize = 24;
 /// Least width at which sharpness is measured, pixels: motion blur is wide, and noise of single pixels is not
@@ -11,7 +11,7 @@ const MEASURED_PX: usize = 320;
 /// Variance that a picture of one colour gets from its noise, levels squared.
 const NOISE: f64 = 25.0;
 
-/// What is measured of a picture.
+/// Measurements of a picture.
 #[derive(Debug, Clone)]
 pub(super) struct Look {
     /// Variance of the Laplacian over that of the picture: the share of edges in what the picture shows.

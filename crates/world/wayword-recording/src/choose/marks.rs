@@ -1,16 +1,16 @@
-//! Where frames should be: marks at equal distances or times, and the pictures near each.
+//! Sets marks along a recording, at equal distances or times: each of them should become a frame.
 
 use super::{INTERVAL_M, INTERVAL_S, MOST_LEFT_OUT};
 use crate::{platform::WHOLE, reel::Recording};
 use wayword_core::DVec3;
 
-/// Most pictures that are looked at for one mark.
+/// Most candidates for one mark.
 const MOST_CANDIDATES: usize = 5;
-/// A picture at most this far from a mark may be its frame, share of the interval.
+/// Greatest distance of a candidate from its mark, as a share of the interval.
 const NEAR: f64 = 0.2;
 /// An interval that is shorter than any time between pictures, seconds.
 const LEAST_S: f64 = 1e-6;
-/// Pictures that are at least so far apart on average are not the pictures of a video, seconds.
+/// Least mean time between the pictures of a slide show, seconds; those of a video are closer.
 const LEAST_APART_S: f64 = 0.5;
 /// A rest at the end gets its own mark if it has at least this share of the interval; else the last mark moves to the
 /// end.
@@ -23,7 +23,7 @@ pub(super) struct Mark {
     pub(super) at: usize,
     /// Pictures that may be its frame, ascending; `at` is one of them.
     pub(super) candidates: Vec<usize>,
-    /// Whether it is not known how the camera came here from the mark before.
+    /// Whether the way from the mark before is not known.
     pub(super) after_gap: bool,
 }
 
@@ -56,14 +56,14 @@ pub(super) fn of(recording: &Recording) -> (Vec<Mark>, usize) {
     (marks, times_s.len() - posed.len())
 }
 
-/// Whether somebody took a few single pictures, each of which is meant to be a frame; not a clip of a video.
+/// Whether these are a few single pictures, each of which its photographer meant to be a frame, and no clip of a video.
 fn is_slide_show(times_s: &[f64]) -> bool {
     let span_s = times_s.last().zip(times_s.first()).map_or(0.0, |(last, first)| last - first);
     times_s.len() <= WHOLE && span_s >= LEAST_APART_S * times_s.len().saturating_sub(1) as f64
 }
 
 /// Marks about one interval apart. The distance from the last mark counts, not the length of the track, because a
-/// tracker's positions jitter while a robot stands still.
+/// tracker's positions jitter while a robot rests.
 fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) -> Vec<Mark> {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return Vec::new() };
     // Indices into `pictures`, not numbers of pictures.
@@ -74,7 +74,7 @@ fn spread(pictures: &[usize], interval: f64, off: &dyn Fn(usize, usize) -> f64) 
         if over < 0.0 {
             continue;
         }
-        // Where pictures are far apart, the one before may be nearer to where the frame should be.
+        // If pictures are far apart, the one before may be nearer to the mark's proper place.
         let before = at.saturating_sub(1);
         if marks.last() != Some(&before) && interval - off(from, pictures[before]) < over {
             marks.push(before);

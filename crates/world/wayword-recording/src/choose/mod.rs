@@ -1,5 +1,8 @@
-//! Which pictures of a recording become frames of its path: at equal distances, or at equal times where no pose is
-//! known. Blurred and repeated pictures are left out.
+//! Chooses the pictures of a recording that become frames of its path.
+//!
+//! Frames are at equal distances, or at equal times if no poses are known. Blurred pictures, repeated ones and those that
+//! look away from the path are left out. First [`marks`] are set along the track, each with some pictures near it as
+//! candidates; then the candidates are read and compared.
 
 mod look;
 mod marks;
@@ -10,16 +13,16 @@ use marks::Mark;
 use std::collections::BTreeSet;
 use wayword_core::{Gaze, Heading, Image, PlatformError};
 
-/// Distance between frames unless the user says otherwise, metres.
+/// Default distance between frames, metres.
 pub(crate) const INTERVAL_M: f64 = 1.0;
-/// Time between frames unless the user says otherwise, seconds: at a walking speed of 0.7 m/s a bit more than a metre.
+/// Default time between frames, seconds: at a walking speed of 0.7 m/s a bit more than a metre.
 pub(crate) const INTERVAL_S: f64 = 2.0;
 /// A picture with less than this share of the recording's usual sharpness is blurred.
 const BLURRED: f64 = 0.3;
-/// A picture that differs by less than this from the one before it shows the same, levels of 255 on average.
+/// A picture that differs from the one before by less than this shows the same, levels of 255 on average.
 const ALIKE: f64 = 2.0;
-/// Most places in a row that may be left out: after more, the straight line between two frames may not be the way that
-/// was walked.
+/// Most marks in a row that may be left out. After more of them, the straight line between two frames may not be the way
+/// that the camera took.
 const MOST_LEFT_OUT: usize = 2;
 
 /// The frames of a recording, and what was left out.
@@ -27,7 +30,7 @@ const MOST_LEFT_OUT: usize = 2;
 pub(crate) struct Choice {
     /// Numbers of pictures, ascending.
     pub(crate) stops: Vec<usize>,
-    /// Indices into `stops`: the way to these stops from the one before is not known, although poses are.
+    /// Indices into `stops`: the way to these stops from the one before is not known, although the poses are.
     pub(crate) breaks: BTreeSet<usize>,
     /// Places that were left out because every picture there is blurred.
     pub(crate) blurred: usize,
@@ -39,7 +42,7 @@ pub(crate) struct Choice {
     pub(crate) without_pose: usize,
 }
 
-/// Chooses the frames. `each` gets every picture that was looked at, so that the caller need not read it again.
+/// Chooses the frames. `each` gets every picture that was examined, so that the caller need not read it again.
 ///
 /// # Errors
 /// When a picture cannot be read.
@@ -55,7 +58,7 @@ pub(crate) fn choose(recording: &Recording, each: &mut dyn FnMut(usize, &Image))
     Ok(Choice { without_pose, ..among(recording, &marks, &looks) })
 }
 
-/// The pictures that are looked at to choose among them, ascending.
+/// The pictures that are examined in order to choose among them, ascending.
 pub(crate) fn wanted(recording: &Recording) -> Vec<usize> {
     candidates(&marks::of(recording).0)
 }
@@ -67,7 +70,7 @@ fn candidates(marks: &[Mark]) -> Vec<usize> {
     wanted
 }
 
-/// Chooses the frames once every candidate has been looked at.
+/// Chooses the frames after every candidate was examined.
 fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choice {
     let look = |number: usize| {
         let found = looks.binary_search_by_key(&number, |(number, _)| *number).ok();
@@ -78,7 +81,7 @@ fn among(recording: &Recording, marks: &[Mark], looks: &[(usize, Look)]) -> Choi
     // The mark of the last stop, and its picture's measures.
     let mut last: Option<(usize, &Look)> = None;
     for (at, mark) in marks.iter().enumerate() {
-        // The ends are always kept: without them the path would be another one.
+        // The first and the last mark stay: without them the path would be another one.
         let is_end = at == 0 || at + 1 == marks.len();
         let is_break = recording.track.is_some() && last.is_some_and(|(from, _)| is_lost(&marks[from + 1..=at]));
         let before = choice.stops.last().copied().filter(|_| !is_break);
@@ -120,20 +123,20 @@ fn sharpness(look: Option<&Look>) -> f64 {
     look.map_or(0.0, |look| look.sharpness)
 }
 
-/// The median.
+/// The median sharpness.
 fn usual_sharpness(looks: &[(usize, Look)]) -> f64 {
     let mut all: Vec<f64> = looks.iter().map(|(_, look)| look.sharpness).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Whether the way over these marks is not known; the last of them would be the next stop.
+/// Whether the way over these marks is unknown. The last of them would be the next stop.
 fn is_lost(marks: &[Mark]) -> bool {
     marks.len() > MOST_LEFT_OUT + 1 || marks.iter().any(|mark| mark.after_gap)
 }
 
-/// Whether a picture shows what an agent sees that comes from the stop `before` and looks ahead; true where that is not
-/// known.
+/// Whether a picture shows the view of an agent that comes from the stop `before` and looks ahead; true if this is
+/// unknown.
 fn faces_the_way(recording: &Recording, before: usize, number: usize) -> bool {
     let fix = |number: usize| recording.track.as_ref()?.at(recording.reel.times_s()[number]);
     let faces = || {

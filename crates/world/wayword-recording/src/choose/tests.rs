@@ -1,3 +1,5 @@
+//! Tests of the choice of frames, on recordings that are painted in memory.
+
 use super::*;
 use crate::{
     describe::Description,
@@ -7,7 +9,7 @@ use crate::{
 use proptest::prelude::*;
 use wayword_core::DVec3;
 
-/// Pictures that are painted when they are asked for.
+/// Pictures that are painted on demand.
 struct Painted {
     times_s: Vec<f64>,
     paint: fn(usize) -> Image,
@@ -27,7 +29,7 @@ impl Reel for Painted {
     }
 }
 
-/// Stripes whose position depends on the number; `blur` widens their edges, pixels.
+/// Stripes at a position that depends on the number; `blur` widens their edges, pixels.
 fn stripes(number: usize, blur: usize) -> Image {
     let (width, height) = (320, 240);
     let row: Vec<f64> =
@@ -92,7 +94,7 @@ fn a_blurred_picture_gives_way_to_a_sharp_neighbour_and_a_blurred_place_is_left_
 }
 
 #[test]
-fn what_shows_the_same_is_one_frame_and_the_end_is_kept() {
+fn repeated_pictures_become_one_frame_except_at_the_end() {
     let choice = chosen(&recording(101, |number| stripes(number.clamp(10, 70), 0), None));
     assert_eq!(choice.stops, [0, 20, 40, 60, 100]);
     assert_eq!(choice.alike, 1);
@@ -101,7 +103,7 @@ fn what_shows_the_same_is_one_frame_and_the_end_is_kept() {
 }
 
 #[test]
-fn a_camera_that_looks_aside_shows_no_way() {
+fn pictures_that_look_aside_are_left_out() {
     let deg = |at: usize| if (15..=25).contains(&at) { 200.0 } else { 90.0 };
     let fixes = (0..=60).map(|at| fix(at, at as f64 / 20.0, deg(at))).collect();
     let choice = chosen(&recording(61, |number| stripes(number, 0), Some(fixes)));
@@ -127,7 +129,7 @@ fn at_the_end_the_picture_along_the_way_is_taken_and_not_the_last_one() {
 }
 
 #[test]
-fn no_way_leads_over_what_nobody_knows() {
+fn gaps_in_the_track_become_breaks() {
     // The camera moved ten metres while the tracker was lost.
     let fixes = (0..=40).map(|at| fix(at, at as f64 / 20.0, 90.0));
     let fixes = fixes.chain((70..=100).map(|at| fix(at, 10.0 + (at - 70) as f64 / 20.0, 90.0))).collect();
@@ -142,7 +144,7 @@ fn no_way_leads_over_what_nobody_knows() {
     assert_eq!(choice.turned_away, 4);
     assert_eq!(choice.breaks.iter().map(|at| choice.stops[*at]).collect::<Vec<_>>(), [80]);
 
-    // Without poses nothing is said of the way, so there are no gaps.
+    // Without poses the way is not known at all, so there are no gaps.
     let choice = chosen(&recording(201, |number| stripes(number.clamp(20, 180), 0), None));
     let alike = chosen(&recording(201, |number| stripes(if number < 160 { 0 } else { number }, 0), None));
     assert!(choice.breaks.is_empty() && alike.breaks.is_empty() && alike.alike > 3, "{alike:?}");
@@ -158,7 +160,7 @@ fn pictures_without_a_pose_are_counted_and_left_out() {
 }
 
 #[test]
-fn nothing_gives_nothing() {
+fn a_recording_without_pictures_has_no_frames() {
     assert_eq!(chosen(&recording(0, |number| stripes(number, 0), None)), Choice::default());
     assert_eq!(chosen(&recording(1, |number| stripes(number, 0), None)).stops, [0]);
 }

@@ -16,12 +16,12 @@ pub(super) struct Camera {
     pub(super) kept: Kept,
 }
 
-/// How pictures are kept.
+/// The place where a camera's pictures are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kept {
-    /// As files within the rows.
+    /// As picture files within the rows.
     Rows,
-    /// As videos beside them.
+    /// As videos outside the tables.
     Video,
 }
 

@@ -1,4 +1,4 @@
-//! The episodes of a dataset: their lengths and their files.
+//! Reads the list of a dataset's episodes: their lengths and their files.
 
 use super::{
     camera::{Camera, Kept},
@@ -23,7 +23,7 @@ pub(super) struct Episode {
     pub(super) length: u64,
     /// The Parquet file with its rows.
     pub(super) data: PathBuf,
-    /// The stretch of a video with its pictures; `None` where pictures are in the rows.
+    /// The stretch of a video with its pictures; `None` if the pictures are in the rows.
     pub(super) clip: Option<Clip>,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Episode {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Clip {
     pub(super) file: PathBuf,
-    /// When the episode begins in the video, seconds.
+    /// Time at which the episode begins in the video, seconds.
     pub(super) from_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! `meta/info.json`, in which a dataset describes itself.
+//! Reads `meta/info.json`, the description of a dataset.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -53,7 +53,7 @@ fn usual_chunk() -> u64 {
 }
 
 impl Info {
-    /// Its path in a dataset.
+    /// The path of the file in a dataset.
     pub(super) fn file(root: &Path) -> PathBuf {
         root.join("meta").join("info.json")
     }
@@ -79,7 +79,7 @@ impl Info {
         Ok(info)
     }
 
-    /// How its files are laid out; `None` where that is not known.
+    /// The layout of the dataset's files; `None` for an unknown version.
     pub(super) fn layout(&self) -> Option<Layout> {
         match self.codebase_version.strip_prefix('v')?.split('.').next()? {
             "2" => Some(Layout::Episodes),
@@ -102,7 +102,7 @@ impl Feature {
         matches!(self.dtype.as_str(), "video" | "image") && !depths
     }
 
-    /// Numbers per row; `None` where it is not a list of floating-point numbers.
+    /// The number of elements in a row; `None` if it is not a list of floating-point numbers.
     pub(super) fn width(&self) -> Option<usize> {
         match (self.dtype.as_str(), self.shape.as_slice()) {
             ("float32" | "float64", [width @ 1..=MAX_WIDTH]) => usize::try_from(*width).ok(),
@@ -110,8 +110,7 @@ impl Feature {
         }
     }
 
-    /// The names of its elements, also where they are grouped (`{"motors": ["x", "y"]}`); `None` where not every
-    /// element has a name.
+    /// The names of its elements, in lists or in groups (`{"motors": ["x", "y"]}`); `None` if an element has no name.
     pub(super) fn names(&self) -> Option<Vec<&str>> {
         let mut names = Vec::new();
         collect(&self.names, &mut names);

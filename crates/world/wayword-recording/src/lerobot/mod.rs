@@ -35,7 +35,7 @@ use wayword_world::files;
 
 const HINT: &str = "download the dataset again, or write it again with LeRobot's library";
 
-/// Folders below `meta` in which its files lie: `meta/episodes/chunk-000`.
+/// Depth of the folders below `meta` that hold its files: `meta/episodes/chunk-000`.
 const META_DEPTH: usize = 2;
 
 /// A dataset.
@@ -78,7 +78,7 @@ impl Dataset {
         known.map(|(_, episode)| episode).ok_or_else(|| unknown(scene, &self.scenes()))
     }
 
-    /// Where the robot was in each row.
+    /// The poses of the robot in each row.
     fn track(&self, table: &Table, rows: Range<u64>, times_s: &[f64]) -> Result<Option<Track>, PlatformError> {
         let Some(feature) = &self.pose_feature else { return Ok(None) };
         let elements = feature.elements();
@@ -172,7 +172,7 @@ fn rows_of(table: &Table, episode: &Episode, layout: Option<Layout>) -> Result<R
     Ok(rows)
 }
 
-/// When the rows were recorded, seconds from the beginning of the episode.
+/// The times of the rows, seconds from the beginning of the episode.
 fn times_s(table: &Table, rows: Range<u64>) -> Result<Vec<f64>, PlatformError> {
     let mut times_s: Vec<f64> = Vec::new();
     table.numbers("timestamp", rows, &mut |row, time_s| {

@@ -1,9 +1,9 @@
 //! Reads Parquet files, as far as LeRobot datasets need them: integers, floating-point numbers, bytes, and lists of
 //! floating-point numbers.
 //!
-//! The crate `parquet` decodes levels, dictionaries, values, and what the footer says about columns. Its panics are
-//! contained. Files are not trusted, but the crate believes some of the numbers in them. This is what version 60.1
-//! does, and what is done here instead:
+//! The crate `parquet` decodes levels, dictionaries, values, and the footer's description of columns. Its panics are
+//! contained. Files are not trusted, but the crate believes some of the numbers in them. The table compares version 60.1
+//! of the crate with this module:
 //!
 //! | number in the file | the crate | here |
 //! |---|---|---|
@@ -15,10 +15,10 @@
 //! | the decompressed length of a page | reserves up to 2 GiB; decompresses gzip without a limit | pages are decompressed here, to at most 8 MiB or 256 times their length (`pages`) |
 //! | entries of a dictionary | reserves memory for up to 2^31 | checked against the dictionary's length (`pages`) |
 //! | values of a page | takes memory for the values of the requested rows; a row's list may go on over all pages | rows are requested in steps, and their pages may not announce more values than a file of this length holds (`pages`) |
-//! | number of texts whose lengths are encoded as differences | reserves memory for any number | such encodings are refused (`pages`) |
+//! | number of texts, if their lengths are encoded as differences | reserves memory for any number | these encodings are refused (`pages`) |
 //!
-//! So memory is at most a multiple of the file's length. Time is not, in one place: in a malicious footer, whose fields
-//! have other types than the crate expects, a list of booleans costs the crate two seconds for nine bytes.
+//! So memory is at most a multiple of the file's length. Time has one exception: in a malicious footer with fields of
+//! other types than the crate expects, a list of booleans costs the crate two seconds for nine bytes.
 
 mod column;
 mod footer;
@@ -45,7 +45,7 @@ const HINT: &str =
 /// Rows that are read at a time.
 const STEP_ROWS: u64 = 1024;
 
-/// Takes the bytes of a row; `None` where the row has none.
+/// Receives the bytes of a row; `None` if the row has none.
 pub(super) type TakeBytes<'a> = dyn FnMut(u64, Option<&[u8]>) -> Result<(), PlatformError> + 'a;
 
 /// A Parquet file: rows with named columns.
@@ -83,7 +83,7 @@ impl Table {
     /// Hands out a column of numbers, row by row.
     ///
     /// # Errors
-    /// When there is no such column, a number is missing, the file is broken, or `take` refuses a number.
+    /// When the column does not exist, a number is missing, the file is broken, or `take` refuses a number.
     pub(super) fn numbers(
         &self,
         name: &str,
@@ -113,7 +113,7 @@ impl Table {
     /// Some elements of a column of lists of `width` numbers: for each row in order, those at the indices `kept`.
     ///
     /// # Errors
-    /// When there is no such column, a list has another length, or the file is broken.
+    /// When the column does not exist, a list has another length, or the file is broken.
     pub(super) fn lists(
         &self,
         name: &str,
@@ -145,10 +145,10 @@ impl Table {
     }
 
     /// Hands out the bytes of some rows, which must ascend. The column holds bytes itself or in its part `bytes`, as
-    /// for pictures. `None` where a row has no bytes.
+    /// for pictures. `None` if a row has no bytes.
     ///
     /// # Errors
-    /// When there is no such column, the file is broken, or `take` fails.
+    /// When the column does not exist, the file is broken, or `take` fails.
     pub(super) fn bytes(&self, name: &str, wanted: &[u64], take: &mut TakeBytes<'_>) -> Result<(), PlatformError> {
         let flat = |leaf: &ColumnDescriptor| leaf.max_rep_level() == 0 && leaf.physical_type() == Type::BYTE_ARRAY;
         let leaf =

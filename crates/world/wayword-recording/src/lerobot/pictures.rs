@@ -72,7 +72,7 @@ impl Stretch {
                     format!("row {row} of the episode needs a picture at {wanted_s:.3} s, but the video has none near");
                 files::wrong(&clip.file, reason, HINT)
             })?;
-            // Two rows may share a picture; the second has nothing new to show.
+            // Two rows may share a picture; the second of them is left out.
             if stretch.numbers.last().is_none_or(|last| *last < number) {
                 stretch.numbers.push(number);
                 stretch.times_s.push(time_s);
@@ -82,7 +82,7 @@ impl Stretch {
     }
 }
 
-/// Index of the time nearest to `wanted_s`; `None` where it is further away than `most_s`.
+/// Index of the time nearest to `wanted_s`; `None` if it is further away than `most_s`.
 fn nearest(times_s: &[f64], wanted_s: f64, most_s: f64) -> Option<usize> {
     let next = times_s.partition_point(|time_s| *time_s < wanted_s);
     let off = |at: usize| times_s.get(at).map(|time_s| ((time_s - wanted_s).abs(), at));
@@ -116,7 +116,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_time_is_nearer_than_the_nearest(mut times_s in prop::collection::vec(0.0..10.0f64, 1..20), wanted_s in -1.0..11.0f64) {
+        fn nearest_finds_the_least_distance(mut times_s in prop::collection::vec(0.0..10.0f64, 1..20), wanted_s in -1.0..11.0f64) {
             times_s.sort_by(f64::total_cmp);
             let off_s = |time_s: f64| (time_s - wanted_s).abs();
             let least = times_s.iter().map(|time_s| off_s(*time_s)).fold(f64::MAX, f64::min);

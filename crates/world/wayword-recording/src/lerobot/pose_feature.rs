@@ -1,4 +1,4 @@
-//! Finds the numbers in a dataset's rows that say where the robot was.
+//! Finds the numbers in a dataset's rows that are the robot's pose, by the names of features and their elements.
 
 use super::info::{Feature, Info};
 use crate::{
@@ -12,7 +12,7 @@ use wayword_core::{DVec3, PlatformError};
 use wayword_world::files;
 
 const HINT: &str = "docs/RECORDINGS.md lists the names in meta/info.json that elements of a pose need";
-/// Words in the name of an element that show that it is not a position in the world.
+/// Words in the name of an element that exclude it as a position in the world.
 const NO_PLACE: [&str; 18] = [
     "vel", "velocity", "speed", "acc", "accel", "linear", "angular", "force", "torque", "effort", "current", "delta",
     "goal", "target", "cmd", "command", "action", "error",
@@ -21,7 +21,7 @@ const NO_PLACE: [&str; 18] = [
 const NO_ROBOT: [&str; 12] =
     ["action", "actions", "eef", "ee", "effector", "tcp", "tool", "hand", "gripper", "wrist", "arm", "object"];
 
-/// The feature that says where the robot was, and its elements that do.
+/// The feature with the robot's pose, and the indices of the elements that form it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PoseFeature {
     pub(super) feature: String,
@@ -55,8 +55,8 @@ enum Role {
 }
 
 impl PoseFeature {
-    /// The feature that the user named, else the only feature that consists of x, y, a yaw and perhaps z; `None` where
-    /// there is no such feature, or several.
+    /// The feature that the user named, else the only feature that consists of x, y, a yaw and perhaps z; `None` if there is
+    /// no candidate, or several.
     ///
     /// # Errors
     /// When the user names a feature that does not exist or holds no position.
@@ -128,7 +128,7 @@ impl PoseFeature {
         [self.x, self.y].into_iter().chain(self.z).chain(facing).collect()
     }
 
-    /// Where the robot was, from the numbers of [`PoseFeature::elements`].
+    /// The fix of the robot, from the numbers of [`PoseFeature::elements`].
     pub(super) fn fix(&self, time_s: f64, numbers: &[f64], described: &Description) -> Option<Fix> {
         let axes = described.axes(Axes::of(Body::Robot));
         let (recorded, facing) = self.split(numbers)?;
@@ -140,7 +140,7 @@ impl PoseFeature {
         Some(Fix { time_s, position: axes.wayword_from_recorded(recorded), heading })
     }
 
-    /// The pose as it was written down, from the same numbers.
+    /// The pose as it was recorded, from the same numbers.
     pub(super) fn sample(&self, numbers: &[f64]) -> Option<Sample> {
         let (position, facing) = self.split(numbers)?;
         let held = match (self.facing, facing) {
@@ -210,12 +210,11 @@ mod tests {
     }
 
     #[test]
-    fn without_a_word_only_what_is_nothing_but_a_place_is_one() {
+    fn find_takes_unnamed_features_only_if_they_are_certain() {
         let found = |key, names| find(&[(key, names)], None).unwrap().map(|place| place.feature);
         assert_eq!(found("observation.state", &["x", "y", "theta"]).as_deref(), Some("observation.state"));
         assert_eq!(found("odometry", &["base.x", "base.y", "base.z", "base.yaw"]).as_deref(), Some("odometry"));
-        // A command, speeds, an arm's hand, positions without a direction, other joints: where it is not certain, there
-        // is no pose.
+        // A command, speeds, an arm's hand, positions without a direction, other joints: in doubt there is no pose.
         assert_eq!(found("action", &["x", "y", "theta"]), None);
         assert_eq!(found("observation.state", &["x.vel", "y.vel", "theta.vel"]), None);
         assert_eq!(found("observation.state.end_effector", &["x", "y", "yaw"]), None);
@@ -227,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_user_names_is_taken_or_refused_with_a_reason() {
+    fn find_takes_or_refuses_the_named_feature() {
         let state = |names| find(&[("state", names)], Some("state"));
         let place = state(&["gripper", "x", "y", "z", "qx", "qy", "qz", "qw"]).unwrap().unwrap();
         assert_eq!(place.elements(), [1, 2, 3, 4, 5, 6, 7]);

@@ -1,4 +1,4 @@
-//! Templates of file paths in `meta/info.json`, written as Python's format strings:
+//! Fills the templates of file paths in `meta/info.json`. They are written as Python's format strings:
 //! `data/chunk-{episode_chunk:03d}/x.parquet`.
 
 use std::path::{Component, Path, PathBuf};
@@ -16,7 +16,7 @@ pub(super) enum Value<'a> {
 /// Fills a template with values; returns the path below the dataset's folder.
 ///
 /// # Errors
-/// In words, when the template cannot be read, needs another value, or leads out of the folder.
+/// A reason in words, if the template is malformed, needs another value, or leads out of the folder.
 pub(super) fn fill(template: &str, values: &[(&str, Value<'_>)]) -> Result<PathBuf, String> {
     let wrong = |reason: String| format!("the path {template:?} {reason}");
     let mut filled = String::new();
@@ -39,7 +39,7 @@ fn is_below(path: &Path) -> bool {
     path.components().all(|part| matches!(part, Component::Normal(_)))
 }
 
-/// A placeholder with its value: `{name}`, `{name:d}` or `{name:03d}`.
+/// Fills one placeholder: `{name}`, `{name:d}` or `{name:03d}`.
 fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, String> {
     let (name, format) = placeholder.split_once(':').unwrap_or((placeholder, ""));
     let value = values.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
@@ -54,7 +54,7 @@ fn written(placeholder: &str, values: &[(&str, Value<'_>)]) -> Result<String, St
         Value::Number(number) => {
             let digits = format.strip_suffix('d').unwrap_or(format);
             let width: usize = if digits.is_empty() { 0 } else { digits.parse().map_err(|_| unknown())? };
-            // Without the zero Python pads with spaces, which no dataset has in its names.
+            // Without the zero Python pads with spaces, which file names in datasets do not have.
             if width > MAX_DIGITS || (width > 0 && !digits.starts_with('0')) {
                 return Err(unknown());
             }
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_known_or_leads_out_is_refused() {
+    fn fill_refuses_unknown_values_and_paths_out_of_the_dataset() {
         for (template, said) in [
             ("{x}", "\"x\""),
             ("{episode_index:6d}", "6d"),

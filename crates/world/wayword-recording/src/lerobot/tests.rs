@@ -1,3 +1,5 @@
+//! Tests on datasets that LeRobot itself wrote, unchanged or damaged.
+
 use super::*;
 use flate2::read::GzDecoder;
 use proptest::prelude::*;

@@ -3,7 +3,7 @@
 //! The first four bytes give the byte order. Each number after them is aligned to its own size, counted from the end of
 //! these four.
 
-/// Bytes that say how the rest is written.
+/// Bytes at the beginning that contain the byte order.
 const ENCAPSULATION_BYTES: usize = 4;
 /// The magic number of Zstandard (RFC 8878).
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];

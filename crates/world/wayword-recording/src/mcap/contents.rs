@@ -1,7 +1,7 @@
-//! Finds the topics of an MCAP file, and where its messages are.
+//! Finds the topics of an MCAP file, and the places of its messages.
 //!
-//! The summary at the end of the file says both. A file may have no summary because its recorder crashed or was set to
-//! write none. Such a file is read through once, up to where it breaks off.
+//! The summary at the end of the file lists both. A file has no summary if its recorder crashed or was set to write none.
+//! Then the file is read through once, up to the byte at which it breaks off.
 
 use super::{
     found::{Found, RecordPlace},
@@ -21,21 +21,21 @@ use std::{
 /// Bytes of a footer, of its record head, and of the magic bytes at the end of the file.
 const FOOTER_BYTES: u64 = 20 + 9 + MAGIC.len() as u64;
 
-/// What a file holds.
+/// The topics of a file, and the parts of it with messages.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Contents {
     /// Topics by name.
     pub(crate) topics: BTreeMap<String, Topic>,
-    /// The parts of the file that hold messages, in the order of the file.
+    /// The parts of the file with messages, in the order of the file.
     stretches: Vec<Stretch>,
-    /// Where and how the file breaks off, if it does. The same error is then expected when its stretch is read.
+    /// The error at the byte where the file breaks off, if it does. Reading that part again has to give the same error.
     pub(crate) broken: Option<String>,
 }
 
 /// A topic that has messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Topic {
-    /// `None` where this kind cannot be read.
+    /// `None` if this kind of messages cannot be read.
     pub(crate) kind: Option<MessageKind>,
     /// The name of its messages' type.
     pub(crate) schema: String,
@@ -49,35 +49,35 @@ pub(crate) struct Topic {
 struct Stretch {
     from: u64,
     to: u64,
-    /// `Some` where a chunk has to be here: the channels that have messages in it, empty where these are not listed.
+    /// `Some` if a chunk has to be here: the channels with messages in it, or an empty set if they are not listed.
     chunk: Option<BTreeSet<u16>>,
 }
 
 /// Channels by id, with their topics.
 pub(crate) type Channels<'a> = BTreeMap<u16, (&'a str, MessageKind)>;
 
-/// A message that was found.
+/// A message of a wanted channel.
 pub(crate) struct Message<'a> {
     pub(crate) topic: &'a str,
     pub(crate) kind: MessageKind,
     pub(crate) logged_ns: i64,
     pub(crate) place: RecordPlace,
-    /// Its bytes, or the first of them.
+    /// Its bytes; of a picture perhaps only the first of them.
     pub(crate) bytes: &'a [u8],
 }
 
 impl Contents {
-    /// Reads which topics and messages a file has.
+    /// Reads the topics of a file, and the places of its messages.
     ///
     /// # Errors
     /// When it cannot be read at all.
     pub(crate) fn of(file: &File) -> Result<Self, String> {
         let length = file.metadata().map_err(|error| error.to_string())?.len();
-        // Where the summary is broken or incomplete, the file is read through instead.
+        // If the summary is broken or incomplete, the file is read through instead.
         Self::told(file, length).map_or_else(|| Self::walked(file, length), Ok)
     }
 
-    /// The contents by the file's summary; `None` where the summary is missing, broken or incomplete.
+    /// The contents from the file's summary; `None` if the summary is missing, broken or incomplete.
     fn told(file: &File, length: u64) -> Option<Self> {
         let footer_at = length.checked_sub(FOOTER_BYTES)?;
         let mut start = None;
@@ -136,7 +136,7 @@ impl Contents {
     /// include its place.
     ///
     /// # Errors
-    /// When the file is broken elsewhere than [`Contents::broken`] says, or `hear` fails.
+    /// When the file is broken at another place than [`Contents::broken`], or `hear` fails.
     pub(crate) fn messages(
         &self,
         file: &File,
@@ -176,7 +176,7 @@ impl Contents {
     }
 }
 
-/// What the records of a file say about its messages.
+/// The schemas, channels and chunks that the records of a file list.
 #[derive(Default)]
 struct Listing {
     /// Names, by id.

@@ -1,10 +1,10 @@
-//! A record that was found: its place and its content.
+//! A record of an MCAP file, with its place and its bytes.
 
 use mcap::records::{Record, op};
 use std::fmt;
 use wayword_core::contain::decoded;
 
-/// Where a record begins.
+/// The place at which a record begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RecordPlace {
     /// Offset in the file; for a record in a compressed chunk, the offset of that chunk.
@@ -22,17 +22,17 @@ impl fmt::Display for RecordPlace {
     }
 }
 
-/// A record that was found.
+/// A record as it was read, before it is parsed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found<'a> {
     pub(crate) opcode: u8,
     pub(crate) place: RecordPlace,
-    /// Its body; for a message perhaps only the first bytes.
+    /// The bytes of its body; for a message perhaps only the first of them.
     pub(crate) bytes: &'a [u8],
 }
 
 impl<'a> Found<'a> {
-    /// Parses it.
+    /// Parses the bytes.
     ///
     /// # Errors
     /// When it is broken; the error includes its place.
@@ -44,8 +44,8 @@ impl<'a> Found<'a> {
     }
 }
 
-/// `None` where a text of a record is longer than the record. This is checked first because `mcap` takes as much memory
-/// for a text as its length says before it looks whether the bytes are there.
+/// `None` if a text of a record is longer than the record. This is checked first because `mcap` reserves the memory that
+/// a text's length asks for before it checks whether the bytes are there.
 fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
     let mut rest = body;
     match opcode {
@@ -64,7 +64,7 @@ fn texts_fit(opcode: u8, body: &[u8]) -> Option<()> {
     Some(())
 }
 
-/// The bytes of a text: its length comes `further` bytes on, and the text follows.
+/// The bytes of a text: its length follows after `further` bytes, and then the text itself.
 fn text<'a>(rest: &mut &'a [u8], further: usize) -> Option<&'a [u8]> {
     let (count, behind) = rest.get(further..)?.split_first_chunk()?;
     let (text, behind) = behind.split_at_checked(usize::try_from(u32::from_le_bytes(*count)).ok()?)?;
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn lengths_that_lead_out_of_a_record_are_found_wherever_they_stand() {
+    fn texts_fit_refuses_lengths_beyond_the_record() {
         let pairs = [text("key"), text("value")].concat();
         let counted_pairs = [(pairs.len() as u32).to_le_bytes().to_vec(), pairs].concat();
         let channel = [vec![1, 0, 2, 0], text("/camera"), text("cdr"), counted_pairs].concat();

@@ -1,4 +1,4 @@
-//! The ROS 2 messages that can be read (`common_interfaces`: `sensor_msgs`, `geometry_msgs`, `nav_msgs`; `tf2_msgs`).
+//! Parses the ROS 2 messages that are used (`common_interfaces`: `sensor_msgs`, `geometry_msgs`, `nav_msgs`; `tf2_msgs`).
 
 use super::cdr::Cdr;
 use glam::{DQuat, DVec3};
@@ -12,7 +12,7 @@ pub(crate) enum MessageKind {
     Compressed,
     /// `sensor_msgs/msg/CameraInfo`.
     Lens,
-    /// `geometry_msgs/msg/PoseStamped`, or `PoseWithCovarianceStamped`, whose covariance comes after the pose.
+    /// `geometry_msgs/msg/PoseStamped`, or `PoseWithCovarianceStamped`, which has its covariance after the pose.
     Pose,
     /// `nav_msgs/msg/Odometry`.
     Odometry,
@@ -21,7 +21,7 @@ pub(crate) enum MessageKind {
 }
 
 impl MessageKind {
-    /// The kind for a schema's name; `None` where it cannot be read.
+    /// The kind for a schema's name; `None` if it cannot be read.
     pub(crate) fn of(schema: &str) -> Option<Self> {
         // Some writers leave out `msg`, and IDL has colons.
         match schema.replace("::", "/").replace("/msg/", "/").as_str() {
@@ -53,7 +53,7 @@ impl MessageKind {
 /// `std_msgs/msg/Header`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Head {
-    /// Time of the data, nanoseconds; 0 where it is not set.
+    /// Time of the data, nanoseconds; 0 if it is not set.
     pub(crate) stamp_ns: i64,
     /// Frame of the data, without the slash that older programs put before it.
     pub(crate) frame: String,
@@ -117,11 +117,11 @@ pub(crate) fn compressed(message: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((cdr.text()?, cdr.bytes()?))
 }
 
-/// What `sensor_msgs/msg/CameraInfo` says of the lens.
+/// The lens in `sensor_msgs/msg/CameraInfo`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Lens {
     pub(crate) head: Head,
-    /// Radians; `None` where the camera is not calibrated, or the angle is not from 10 to 160 degrees.
+    /// Radians; `None` if the camera is not calibrated, or the angle is not from 10 to 160 degrees.
     pub(crate) horizontal_fov_rad: Option<f64>,
 }
 
@@ -146,7 +146,7 @@ impl Lens {
     }
 }
 
-/// Where one frame is in another.
+/// The position and rotation of one frame in another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Placing {
     pub(crate) position: DVec3,
@@ -157,7 +157,7 @@ pub(crate) struct Placing {
 impl Placing {
     pub(crate) const HERE: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
-    /// `None` where the numbers are not a position and a rotation.
+    /// `None` if the numbers are not a position and a rotation.
     pub(crate) fn new(position: [f64; 3], rotation: [f64; 4]) -> Option<Self> {
         let (position, rotation) = (DVec3::from(position), DQuat::from_array(rotation));
         let length = rotation.length();
@@ -165,7 +165,8 @@ impl Placing {
         stands.then(|| Self { position, rotation: rotation / length })
     }
 
-    /// The placing in the outer frame of something that `inner` places in the frame that `self` places.
+    /// Composes two placings: `self` places a frame in an outer one, and `inner` places something in that frame. The result
+    /// places that thing in the outer frame.
     pub(crate) fn then(self, inner: Self) -> Self {
         let position = self.position + self.rotation * inner.position;
         Self { position, rotation: (self.rotation * inner.rotation).normalize() }
@@ -180,10 +181,10 @@ impl Placing {
     }
 }
 
-/// Where a frame was: a pose, or a transform.
+/// A placing of a frame at a time: a pose, or a transform.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Placed {
-    /// The time, and the frame in which it is placed.
+    /// The time, and the outer frame.
     pub(crate) head: Head,
     /// The frame that is placed; `None` for a pose, which does not name it.
     pub(crate) what: Option<String>,
@@ -219,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_in_a_turned_frame_is_where_both_say() {
+    fn composed_placings_apply_both_rotations() {
         let quarter = DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2);
         let robot = Placing { position: DVec3::new(1.0, 2.0, 0.0), rotation: quarter };
         let camera = Placing { position: DVec3::new(0.5, 0.0, 1.0), rotation: DQuat::IDENTITY };
@@ -232,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_rotation_is_no_place() {
+    fn placing_refuses_zero_and_nan_rotations() {
         assert_eq!(Placing::new([0.0; 3], [0.0; 4]), None);
         assert_eq!(Placing::new([f64::NAN, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]), None);
     }

@@ -1,6 +1,7 @@
-//! ROS 2 recordings in MCAP files (`ros2 bag record`, Foxglove): pictures of one camera, and where it was.
+//! Reads ROS 2 recordings from MCAP files (`ros2 bag record`, Foxglove): the pictures of one camera, and its poses.
 //!
-//! Only the places of the pictures in the file, and the poses, stay in memory.
+//! A camera's pose comes from a chain of transforms: of the camera on the robot, of the robot in its odometry, and of that
+//! in the map. Memory holds only the poses, and the places of the pictures in the file.
 
 mod cdr;
 mod contents;
@@ -111,7 +112,7 @@ impl McapFile {
         Ok(Recording { reel: Box::new(pictures), track, horizontal_fov_rad, described: self.described.clone() })
     }
 
-    /// The pose topic that the user named; `None` where the user named none.
+    /// The pose topic that the user named; `None` if the user named none.
     fn named_poses(&self, contents: &Contents) -> Result<Option<(&str, MessageKind)>, topics::Unclear> {
         let Some(named) = self.described.poses.as_deref() else { return Ok(None) };
         let kind = contents.topics.get(named).and_then(|topic| topic.kind).filter(|kind| kind.is_pose());
@@ -126,8 +127,8 @@ impl McapFile {
         })
     }
 
-    /// Where the camera was, and the clock that pictures and poses share. This is the clock of their own stamps. It is
-    /// the recorder's clock instead if all stamps of either are missing, or if their time spans do not overlap.
+    /// The track of the camera, and the clock that pictures and poses share. This is the clock of their own stamps. If all
+    /// stamps of either are missing, or if their time spans do not overlap, it is the recorder's clock instead.
     fn track(&self, shots: &[Shot], way: Option<&Way<'_>>, frame: &str) -> (Option<Track>, Clock) {
         let stamped = shots.iter().any(|shot| shot.times.on(Clock::Stamp).is_some());
         let usual = if stamped { Clock::Stamp } else { Clock::Log };
@@ -158,7 +159,7 @@ fn fixes(placings: &[(i64, Placing)], first_ns: i64, axes: Axes) -> Vec<Fix> {
     placings.iter().map(fix).collect()
 }
 
-/// The poses as they were written down.
+/// The poses as they were recorded.
 fn samples(placings: &[(i64, Placing)]) -> Vec<Sample> {
     let sample = |(_, placing): &(i64, Placing)| Sample {
         position: DVec3::from(placing.position.to_array()),
@@ -167,8 +168,8 @@ fn samples(placings: &[(i64, Placing)]) -> Vec<Sample> {
     placings.iter().map(sample).collect()
 }
 
-/// Which body the frame of the pictures is. By `sensor_msgs/msg/Image` it should be the optical frame, but some
-/// recorders name the camera's body. A camera does not look straight up, so a frame whose z axis points up is a body.
+/// The body that the frame of the pictures belongs to. By `sensor_msgs/msg/Image` it should be the optical frame, but some
+/// recorders name the camera's body. A camera does not look straight up, so a frame with its z axis pointing up is a body.
 fn body(placings: &[(i64, Placing)], frame: &str) -> Body {
     let upright = placings.first().is_some_and(|(_, placing)| (placing.rotation * Vector::Z).z > 0.8);
     if upright && !frame.contains("optical") { Body::Robot } else { Body::Optical }
@@ -198,7 +199,7 @@ impl Source for McapFile {
     }
 }
 
-/// A picture: its time, and its place in the file.
+/// The times of a picture, and its place in the file.
 struct Shot {
     times: Times,
     place: RecordPlace,
@@ -212,7 +213,7 @@ fn beginnings(file: &File, contents: &Contents) -> Result<(Heads, BTreeMap<Strin
     contents.messages(file, &wanted, &mut |Message { topic, kind, bytes, .. }| {
         if !missing.remove(topic) {
         } else if kind == MessageKind::Lens {
-            // A lens that cannot be read counts as not known.
+            // A lens that cannot be read counts as unknown.
             lenses.extend(Lens::read(bytes).ok().map(|lens| (topic.to_owned(), lens)));
         } else {
             heads.insert(topic.to_owned(), PictureHead::read(kind, bytes)?);

@@ -1,14 +1,14 @@
-//! Turns ROS pictures into RGB (encodings of `sensor_msgs/include/sensor_msgs/image_encodings.hpp`).
+//! Decodes ROS pictures into RGB (encodings of `sensor_msgs/include/sensor_msgs/image_encodings.hpp`).
 
 use super::messages::{self, MessageKind, Raw};
 use crate::size;
 use wayword_core::Image;
 use wayword_world::files;
 
-/// Why a camera's messages cannot be read as pictures, by their encoding; `None` where they can.
+/// The reason why messages with this encoding cannot be read as pictures; `None` if they can.
 pub(crate) fn unfit(kind: MessageKind, encoding: &str) -> Option<String> {
     let known = match kind {
-        // Depth is `16UC1; compressedDepth png`. Where the format does not say depth, the first bytes of the file
+        // Depth is `16UC1; compressedDepth png`. If the format does not name depth, the first bytes of the file
         // decide later.
         MessageKind::Compressed => {
             !encoding.contains("compressedDepth") && !is_depth(encoding.split(';').next()?.trim())
@@ -35,7 +35,7 @@ pub(crate) fn picture(kind: MessageKind, message: &[u8]) -> Result<Image, String
     }
 }
 
-/// How pixels lie in a row.
+/// The layout of the pixels in a row.
 #[derive(Clone, Copy)]
 enum Layout {
     /// Bytes per pixel, and which of them are red, green and blue.

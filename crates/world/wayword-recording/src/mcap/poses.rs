@@ -1,4 +1,4 @@
-//! Where the camera was, from the tree of frames, odometry, or poses.
+//! Finds the poses of the camera, in the tree of frames, odometry, or poses.
 
 use super::{
     messages::{Head, MessageKind, Placed, Placing},
@@ -7,7 +7,7 @@ use super::{
 };
 use std::collections::BTreeMap;
 
-/// Words in the names of topics whose poses are goals, not where the robot was.
+/// Words in the names of topics with poses that are goals, and not the robot's own.
 const WISHED: [&str; 4] = ["goal", "initialpose", "target", "plan"];
 const NAME_IT: &str = "write `poses = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
 
@@ -30,11 +30,11 @@ struct Moves {
     edge: Edge,
 }
 
-/// Edges from the camera's own frame, or from that of the robot that carries it, up to a frame that stands still.
+/// The edges from the camera's own frame, or from that of the robot that carries it, up to a fixed frame.
 #[derive(Debug)]
 pub(crate) struct Way<'a> {
     edges: Vec<&'a Edge>,
-    /// Whether it begins at the camera's own frame.
+    /// Whether the way begins at the camera's own frame.
     pub(crate) of_camera: bool,
 }
 
@@ -61,7 +61,7 @@ impl Poses {
         }
     }
 
-    /// The way by the named topic, or else by the obvious one. `None` where it is not known where the camera was.
+    /// The way by the named topic, or else by the obvious one. `None` if the file has no poses of the camera.
     pub(crate) fn way(&self, named: Option<(&str, MessageKind)>) -> Result<Option<Way<'_>>, Unclear> {
         match named {
             Some((topic, MessageKind::Transforms)) => {
@@ -100,7 +100,7 @@ impl Poses {
         Ok(None)
     }
 
-    /// The way of what a topic places. It begins at the camera's frame if the place of that on the robot is known.
+    /// The way that a topic gives. It begins at the camera's frame if the mounting of the camera on the robot is known.
     fn moved<'a>(&'a self, moves: &'a Moves) -> Way<'a> {
         let mounted = moves.what.as_ref().and_then(|what| self.tree.up_to(what));
         let of_camera = mounted.is_some();
@@ -126,7 +126,7 @@ mod tests {
         Placed { head: Head { stamp_ns, frame: frame.to_owned() }, what: what.map(str::to_owned), placing }
     }
 
-    fn told(poses: &mut Poses, topic: &str, kind: MessageKind, frame: &str, what: Option<&str>, x: f64) {
+    fn add_two_poses(poses: &mut Poses, topic: &str, kind: MessageKind, frame: &str, what: Option<&str>, x: f64) {
         for step in 1..=2_i32 {
             let position = DVec3::new(x * f64::from(step), 0.0, 0.0);
             poses.add(topic, kind, i64::from(step), vec![placed(frame, what, i64::from(step), position)]);
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn odometry_and_where_the_camera_is_on_the_robot_make_the_cameras_way() {
         let mut poses = Poses::new("cam");
-        told(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 1.0);
+        add_two_poses(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 1.0);
         assert!(!poses.way(None).unwrap().unwrap().of_camera);
         poses.add(
             "/tf_static",
@@ -153,24 +153,24 @@ mod tests {
     fn the_tree_goes_before_odometry_and_odometry_before_poses() {
         let mut poses = Poses::new("cam");
         assert!(poses.way(None).unwrap().is_none());
-        told(&mut poses, "/goal_pose", MessageKind::Pose, "map", None, 9.0);
+        add_two_poses(&mut poses, "/goal_pose", MessageKind::Pose, "map", None, 9.0);
         assert!(poses.way(None).unwrap().is_none());
-        told(&mut poses, "/pose", MessageKind::Pose, "map", None, 1.0);
+        add_two_poses(&mut poses, "/pose", MessageKind::Pose, "map", None, 1.0);
         let x = |poses: &Poses, named| poses.way(named).unwrap().unwrap().placings(Clock::Stamp)[0].1.position.x;
         assert_eq!(x(&poses, None), 1.0);
-        told(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 2.0);
+        add_two_poses(&mut poses, "/odom", MessageKind::Odometry, "odom", Some("base"), 2.0);
         assert_eq!(x(&poses, None), 2.0);
         assert_eq!(x(&poses, Some(("/goal_pose", MessageKind::Pose))), 9.0);
         assert!(poses.way(Some(("/tf", MessageKind::Transforms))).unwrap_err().0.contains("/tf"));
-        told(&mut poses, "/tf", MessageKind::Transforms, "map", Some("cam"), 3.0);
+        add_two_poses(&mut poses, "/tf", MessageKind::Transforms, "map", Some("cam"), 3.0);
         assert_eq!(x(&poses, None), 3.0);
     }
 
     #[test]
     fn of_two_odometries_one_has_to_be_named() {
         let mut poses = Poses::new("cam");
-        told(&mut poses, "/wheels", MessageKind::Odometry, "odom", Some("base"), 1.0);
-        told(&mut poses, "/filtered", MessageKind::Odometry, "odom", Some("base"), 2.0);
+        add_two_poses(&mut poses, "/wheels", MessageKind::Odometry, "odom", Some("base"), 1.0);
+        add_two_poses(&mut poses, "/filtered", MessageKind::Odometry, "odom", Some("base"), 2.0);
         let (why, hint) = poses.way(None).unwrap_err();
         assert!(why.contains("/filtered, /wheels") && hint.contains("poses ="), "{why}");
         assert!(poses.way(Some(("/wheels", MessageKind::Odometry))).unwrap().is_some());

@@ -1,4 +1,4 @@
-//! Reads the records of a file that concern messages, one after the other, also those in chunks (mcap.dev/spec).
+//! Reads those records of an MCAP file that concern messages, one after another, also in chunks (mcap.dev/spec).
 //!
 //! The crate `mcap` unpacks compressed chunks, a record at a time. Everything else is read here, because the crate
 //! reads every record whole, while only the first bytes of a picture are needed to find its time.
@@ -31,10 +31,10 @@ const MAX_UNPACKED: (u64, u64) = (256 << 20, 1000);
 /// whole record before its bytes are there, so the upper bound is that of the largest picture.
 const UNPACKED_RECORD: (u64, u64) = (64 << 10, 258 << 20);
 
-/// Most bytes that are wanted of a message, by channel.
+/// Most bytes of a message that the caller needs, by channel.
 pub(crate) type Most<'a> = dyn Fn(u16) -> u64 + 'a;
 
-/// Takes records, and can stop the reading.
+/// Receives records, and can stop the reading.
 pub(crate) type Hear<'a> = dyn FnMut(Found<'_>) -> Result<ControlFlow<()>, String> + 'a;
 
 /// Records in a part of a file.
@@ -125,13 +125,13 @@ impl<'a> Records<'a> {
         Ok((opcode, length))
     }
 
-    /// Enters the chunk whose head was read.
+    /// Enters the chunk after its head was read.
     fn open(&mut self, length: u64) -> Result<(), String> {
         let from = self.at;
         let end = from.saturating_add(HEAD_BYTES).saturating_add(length).min(self.end);
         let head = self.exactly::<{ CHUNK_HEAD_BYTES as usize }>()?;
         let is_packed = head[28..32] != [0; 4];
-        // The crate handles everything unusual.
+        // The crate handles all unusual chunks.
         if !is_packed && u64_at(&head, 32).checked_add(CHUNK_HEAD_BYTES) == Some(length) {
             (self.at, self.chunk_end) = (from + HEAD_BYTES + CHUNK_HEAD_BYTES, end);
             return Ok(());
@@ -150,7 +150,7 @@ impl<'a> Records<'a> {
         Ok(())
     }
 
-    /// Reads the wanted first bytes of a body and skips the rest. Returns whether the record is wanted at all.
+    /// Reads the needed first bytes of a body and skips the rest. Returns whether the record concerns messages.
     fn body(&mut self, opcode: u8, length: u64, most: &Most<'_>) -> Result<bool, String> {
         self.body.clear();
         let begun = length.min(2);
@@ -164,7 +164,7 @@ impl<'a> Records<'a> {
     }
 
     fn append(&mut self, count: u64) -> Result<(), String> {
-        // Memory grows only with the bytes that are really there.
+        // Memory grows only with the bytes that the file really has.
         match self.file.by_ref().take(count).read_to_end(&mut self.body) {
             Ok(read) if read as u64 == count => Ok(()),
             Ok(_) => Err(self.broken(&ErrorKind::UnexpectedEof.into())),
@@ -211,7 +211,7 @@ impl Packed {
             match event.transpose().map_err(|error| format!("{place}: {error}"))? {
                 None => return Ok(ControlFlow::Continue(())),
                 Some(LinearReadEvent::ReadRequest(count)) => {
-                    // Where the chunk ends too early this is less, or 0; the reader reports that.
+                    // If the chunk ends too early this is less, or 0; the reader reports that.
                     let count = usize::try_from(self.left).map_or(count, |left| left.min(count));
                     file.read_exact(self.reader.insert(count)).map_err(|error| format!("{place}: {error}"))?;
                     self.reader.notify_read(count);
@@ -230,7 +230,7 @@ impl Packed {
     }
 }
 
-/// Most bytes that are wanted of a record; `None` where it does not concern messages.
+/// Most bytes of a record that are needed; `None` if it does not concern messages.
 fn wanted(opcode: u8, body: &[u8], most: &Most<'_>) -> Option<u64> {
     let id = body.first_chunk().copied().map_or(0, u16::from_le_bytes);
     match opcode {

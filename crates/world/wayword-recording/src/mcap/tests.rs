@@ -34,7 +34,7 @@ fn pictures(recording: &Recording, wanted: &[usize]) -> Result<Vec<Image>, Strin
     taken.map(|()| images).map_err(|error| error.to_string())
 }
 
-/// Where the robot was, and where it looked, degrees.
+/// The robot's position, and its heading in degrees.
 fn robot(frame: usize) -> (DVec3, f64) {
     match frame {
         0..=5 => (DVec3::new(frame as f64 * 0.5, 0.0, 0.0), 90.0),
@@ -82,7 +82,7 @@ const ALL: [(&str, [f64; 2]); 5] = [
 ];
 
 #[test]
-fn what_other_programs_wrote_comes_back() {
+fn recordings_of_other_programs_give_their_path() {
     for (name, camera) in ALL {
         let recording = read(&fixture(name), Description::default()).unwrap();
         check_walk(&recording, 11, camera);
@@ -96,7 +96,7 @@ fn what_other_programs_wrote_comes_back() {
 }
 
 #[test]
-fn the_summary_of_a_file_tells_what_going_through_it_tells() {
+fn a_summary_gives_the_same_contents_as_all_records() {
     for (name, _) in ALL {
         let file = File::open(fixture(name)).unwrap();
         let bytes = std::fs::read(fixture(name)).unwrap();
@@ -123,7 +123,7 @@ fn places(file: &File, contents: &Contents) -> Vec<(String, RecordPlace)> {
     places
 }
 
-/// Where a file's compressed chunks begin.
+/// The offsets of a file's compressed chunks.
 fn chunks(name: &str) -> BTreeSet<usize> {
     let file = File::open(fixture(name)).unwrap();
     let places = places(&file, &Contents::of(&file).unwrap());
@@ -133,7 +133,7 @@ fn chunks(name: &str) -> BTreeSet<usize> {
 }
 
 #[test]
-fn of_a_file_whose_recorder_crashed_the_beginning_is_read() {
+fn a_file_of_a_crashed_recorder_is_read_up_to_its_break() {
     for (name, camera) in ALL {
         let bytes = std::fs::read(fixture(name)).unwrap();
         let mut counts = Vec::new();
@@ -166,7 +166,7 @@ fn of_a_file_whose_recorder_crashed_the_beginning_is_read() {
 }
 
 #[test]
-fn what_is_named_is_taken() {
+fn named_cameras_and_poses_are_taken() {
     let path = fixture("odometry_zstd.mcap");
     let named = |camera: &str, poses: &str| Description {
         camera: Some(camera.to_owned()).filter(|name| !name.is_empty()),
@@ -187,13 +187,13 @@ fn what_is_named_is_taken() {
 }
 
 #[test]
-fn messages_that_are_compressed_by_themselves_are_told_apart() {
+fn messages_compressed_by_themselves_are_recognised() {
     let error = read(&fixture("messages_zstd.mcap"), Description::default()).err().unwrap();
     assert!(error.contains("each message is compressed by itself"), "{error}");
 }
 
 #[test]
-fn what_is_no_mcap_file_is_refused_at_once() {
+fn open_refuses_files_that_are_no_mcap_at_once() {
     for (bytes, told) in [
         (&b"\x89MCAP"[..], "byte 0: does not begin like an MCAP file"),
         (b"#ROSBAG V2.0\n....", "is a ROS 1 bag, not an MCAP file"),
@@ -288,7 +288,7 @@ fn pictures_and_poses_meet_on_a_clock_that_both_have() {
 }
 
 #[test]
-fn pictures_that_were_written_late_stand_where_they_belong() {
+fn pictures_that_were_written_late_keep_their_order() {
     let bytes = made(&[
         ("/image", IMAGE, "cdr", 10 * S, grey(30, 3)),
         ("/image", IMAGE, "cdr", 11 * S, grey(10, 1)),
@@ -303,7 +303,7 @@ fn pictures_that_were_written_late_stand_where_they_belong() {
 }
 
 #[test]
-fn errors_name_what_is_there_and_what_to_do() {
+fn errors_name_the_topics_and_a_way_out() {
     let errors: Vec<String> = [
         made(&[("/left/image", IMAGE, "cdr", 1, grey(1, 1)), ("/right/image", IMAGE, "cdr", 2, grey(1, 1))]),
         made(&[("/video", "foxglove.CompressedVideo", "protobuf", 1, vec![1])]),
@@ -328,7 +328,7 @@ fn errors_name_what_is_there_and_what_to_do() {
 }
 
 #[test]
-fn a_picture_that_is_cut_off_is_told_by_its_number() {
+fn an_error_about_a_cut_picture_names_its_number() {
     let mut cut = grey(1, 1);
     cut.pop();
     let bytes = made(&[("/image", IMAGE, "cdr", 1, grey(1, 1)), ("/image", IMAGE, "cdr", 2, cut)]);
@@ -383,7 +383,7 @@ fn exhaust(bytes: &[u8]) {
 #[test]
 fn a_text_that_is_longer_than_its_file_is_refused_before_it_takes_memory() {
     let record = |opcode: u8, body: &[u8]| [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat();
-    // A schema whose name claims a length of 1.7 GB.
+    // A schema with a name that claims a length of 1.7 GB.
     let schema = record(3, &[&[1, 0][..], b"iense", &[0; 8]].concat());
     let (_folder, read) = bytes_read(&[b"\x89MCAP0\r\n".to_vec(), schema].concat(), Description::default());
     let error = read.err().unwrap();

@@ -1,4 +1,4 @@
-//! Finds out which of a file's topics is the camera, and which the lens.
+//! Chooses the topic of a file that is the camera, and the topic of its lens.
 
 use super::{
     contents::Contents,
@@ -10,15 +10,15 @@ use std::collections::BTreeMap;
 
 /// Most names that an error lists.
 const MAX_NAMES: usize = 20;
-/// Words in the names of topics whose pictures do not show what a person would see.
+/// Words in the names of topics with pictures of another kind than a person would see.
 const NO_VIEW: [&str; 9] = ["depth", "disparity", "infra", "thermal", "mask", "segment", "semantic", "label", "debug"];
-/// Words in the names of topics whose pictures do.
+/// Words in the names of topics with pictures in colour.
 const COLOUR: [&str; 3] = ["color", "colour", "rgb"];
 
 /// The head of the first message of each camera, by topic.
 pub(crate) type Heads = BTreeMap<String, PictureHead>;
 
-/// Why there is no camera, and what to do.
+/// The reason why a topic cannot be chosen, and a way out.
 pub(crate) type Unclear = (String, &'static str);
 
 const NAME_IT: &str = "write `camera = \"TOPIC\"` into a file NAME.toml beside NAME.mcap, or into recording.toml";
@@ -34,7 +34,7 @@ pub(crate) fn camera<'a>(contents: &'a Contents, heads: &Heads, named: Option<&s
         .iter()
         .filter_map(|(name, topic)| {
             let kind = topic.kind.filter(|kind| kind.is_picture())?;
-            // A topic whose messages all come after a break in the file has no head.
+            // A topic has no head if all its messages come after a break in the file.
             Some((name.as_str(), pixels::unfit(kind, &heads.get(name)?.encoding)))
         })
         .collect();
@@ -95,7 +95,7 @@ pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// The one camera among those that can be read: the only one; else the only one without depth and the like and without
+/// The obvious camera among those that can be read: the only one; else the only one without depth and the like and without
 /// doubles; else the only one of these with colour in its name.
 fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
     let only = |names: &[&'a str]| if let [name] = names { Some(*name) } else { None };
@@ -109,7 +109,7 @@ fn obvious<'a>(fit: &[&'a str]) -> Option<&'a str> {
     only(fit).or_else(|| only(&seen)).or_else(|| only(&colour))
 }
 
-/// A camera's lens: that of the topic beside it, else those with the same frame if all of them have one field of view.
+/// A camera's lens: that of the neighbouring topic, else those with the same frame if all of them have one field of view.
 pub(crate) fn lens<'a>(lenses: &'a BTreeMap<String, Lens>, camera: &str, frame: &str) -> Option<&'a Lens> {
     let plain = camera.strip_suffix("/compressed").unwrap_or(camera);
     let beside = plain.rsplit_once('/').map_or("", |(parent, _)| parent);

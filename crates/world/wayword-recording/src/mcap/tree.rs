@@ -1,9 +1,9 @@
-//! Frames that are placed in each other (`tf2`), over time.
+//! The tree of frames that are placed in each other (`tf2`), over time.
 
 use super::messages::{Placed, Placing};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Frames that stand still, the best first (REP 105).
+/// Names of fixed frames, the best first (REP 105).
 const STANDING: [&str; 3] = ["map", "odom", "world"];
 /// Most frames of a file: no robot has more.
 const MAX_FRAMES: usize = 100_000;
@@ -13,7 +13,7 @@ const MAX_FRAMES: usize = 100_000;
 pub(crate) enum Clock {
     /// The stamps in the messages' headers.
     Stamp,
-    /// When the recorder received them.
+    /// The times at which the recorder received the messages.
     Log,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct Times {
 }
 
 impl Times {
-    /// The time on a clock; `None` where the stamp is 0.
+    /// The time on a clock; `None` if that is the stamp and it is 0.
     pub(crate) fn on(self, clock: Clock) -> Option<i64> {
         match clock {
             Clock::Stamp => Some(self.stamp_ns).filter(|stamp_ns| *stamp_ns != 0),
@@ -34,7 +34,7 @@ impl Times {
     }
 }
 
-/// How one frame moves in another.
+/// The placings of one frame in another, over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Edge {
     /// The frame in which it is placed.
@@ -65,8 +65,8 @@ impl Edge {
     }
 }
 
-/// Longest time between two transforms between which the way is interpolated on a straight line, nanoseconds: as long
-/// as tf2 keeps transforms.
+/// Longest time between two transforms over which the way is interpolated on a straight line, nanoseconds: as long as
+/// tf2 stores transforms.
 const MAX_GAP_NS: i64 = 10_000_000_000;
 
 /// An edge on one clock.
@@ -76,7 +76,7 @@ pub(crate) struct Timed {
 }
 
 impl Timed {
-    /// Where the frame is at a time, interpolated between the two placings around it. `None` before the first, after
+    /// The placing at a time, interpolated between the two samples around it. `None` before the first, after
     /// the last, and in gaps longer than [`MAX_GAP_NS`].
     fn at(&self, time_ns: i64) -> Option<Placing> {
         if !self.moves {
@@ -96,7 +96,7 @@ impl Timed {
     }
 }
 
-/// Where the first frame of a chain is in the last one, at each time at which one of the chain moved.
+/// The placing of the first frame of a chain in the last one, at each time at which a frame of the chain moved.
 pub(crate) fn placings(chain: &[&Edge], clock: Clock) -> Vec<(i64, Placing)> {
     let chain: Vec<Timed> = chain.iter().map(|edge| edge.on(clock)).collect();
     let moving = chain.iter().filter(|edge| edge.moves);
@@ -113,7 +113,7 @@ pub(crate) struct Tree {
     /// The camera's frame: only this and the frames above it are needed.
     camera: String,
     edges: BTreeMap<String, Edge>,
-    /// The only frames that are still needed, once the way up to one that stands still is known.
+    /// The only frames that are still needed, once the way up to a fixed frame is known.
     kept: Option<BTreeSet<String>>,
 }
 
@@ -122,7 +122,7 @@ impl Tree {
         Self { camera: camera.to_owned(), ..Self::default() }
     }
 
-    /// Takes in where a frame is.
+    /// Adds a placing of a frame.
     pub(crate) fn add(&mut self, logged_ns: i64, placed: Placed, fixed: bool) {
         let Some(frame) = placed.what else { return };
         let unknown = !self.edges.contains_key(&frame);
@@ -135,7 +135,7 @@ impl Tree {
             fixed,
             ..Edge::default()
         });
-        // Where a frame changes its parent, only the first parent counts.
+        // If a frame changes its parent, only the first parent counts.
         if edge.parent == placed.head.frame {
             edge.fixed = fixed;
             if fixed {
@@ -170,15 +170,15 @@ impl Tree {
         above
     }
 
-    /// The edges from the camera's frame up to another one; `None` where that is not above it.
+    /// The edges from the camera's frame up to another one; `None` if that is not above it.
     pub(crate) fn up_to(&self, frame: &str) -> Option<Vec<&Edge>> {
         let above = self.above(&self.camera);
         let to = above.iter().position(|above| *above == frame)?;
         above[..to].iter().map(|frame| self.edges.get(*frame)).collect()
     }
 
-    /// The edges from the camera's frame up to the best frame that stands still. With `any`, up to the root where there
-    /// is no such frame. `None` where there is no way, or nothing on it ever moves.
+    /// The edges from the camera's frame up to the best fixed frame. With `any`, up to the root if there is no fixed frame.
+    /// `None` if there is no way, or no edge of it ever moves.
     pub(crate) fn way_up(&self, any: bool) -> Option<Vec<&Edge>> {
         let above = self.above(&self.camera);
         let best = above.iter().filter_map(|frame| Some((standing(frame)?, *frame))).min().map(|(_, frame)| frame);
@@ -187,7 +187,7 @@ impl Tree {
     }
 }
 
-/// Index in [`STANDING`] of the frame that a name means: `map`, `robot1/map`.
+/// Index in [`STANDING`] of a frame with one of those names: `map`, `robot1/map`.
 fn standing(frame: &str) -> Option<usize> {
     let name = frame.rsplit('/').next().unwrap_or(frame);
     STANDING.iter().position(|standing| *standing == name)
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_frame_that_stands_there_is_no_way_up() {
+    fn way_up_needs_a_fixed_frame() {
         let moving = [("base", "cam", 1, 0.0, false), ("base", "cam", 2, 0.0, false)];
         assert!(tree(&moving).way_up(false).is_none());
         assert!(tree(&moving).way_up(true).is_some());

@@ -1,3 +1,5 @@
+//! Tests of the platform on folders of pictures that are written here.
+
 use super::*;
 use ::image::{Rgb, RgbImage};
 use std::sync::Mutex;
@@ -66,7 +68,7 @@ fn a_walk_without_poses_knows_its_order_alone() {
 }
 
 #[test]
-fn stretches_keep_to_what_is_asked_for_and_to_the_seed() {
+fn stretches_fit_the_request_and_depend_on_the_seed() {
     let folder = walk(true);
     let (platform, scene, _) = open(&folder);
     let request = PathRequest { length_m: 2.0..=4.0, ..PathRequest::default() };
@@ -121,7 +123,7 @@ fn with_unreadable() -> tempfile::TempDir {
 }
 
 #[test]
-fn recordings_that_cannot_be_read_are_told_at_once_unless_others_are_meant() {
+fn check_reports_all_unreadable_recordings_of_the_scenes() {
     let shelf = with_unreadable();
     let (platform, ..) = open(&shelf);
     let scenes: Vec<SceneId> = ["a", "b", "phone", "torn", "elsewhere"].map(|name| SceneId::new(name).unwrap()).into();
@@ -137,7 +139,7 @@ fn recordings_that_cannot_be_read_are_told_at_once_unless_others_are_meant() {
 }
 
 #[test]
-fn a_recording_that_cannot_be_opened_is_told_to_those_who_want_it() {
+fn an_unopened_recording_reports_its_error_when_used() {
     let shelf = with_unreadable();
     std::fs::write(shelf.path().join("b/2.heic"), b"\0\0\0\x1cftypheic\0\0\0\0mif1heic").unwrap();
     let (platform, ..) = open(&shelf);
@@ -156,7 +158,7 @@ fn files(platform: &RecordingPlatform, scene: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_files_of_a_folder_are_its_pictures_and_what_tells_of_them() {
+fn files_of_a_folder_are_its_pictures_poses_and_description() {
     let shelf = with_unreadable();
     let a = shelf.path().join("a");
     std::fs::create_dir(a.join("run")).unwrap();
@@ -176,7 +178,7 @@ fn the_files_of_a_folder_are_its_pictures_and_what_tells_of_them() {
 
 #[cfg(all(feature = "mcap", feature = "video"))]
 #[test]
-fn the_files_of_a_recording_in_one_file_are_it_and_what_lies_beside_it() {
+fn files_of_a_video_include_its_poses_and_description() {
     let shelf = tempfile::tempdir().unwrap();
     for name in ["walk.mp4", "walk.toml", "walk.csv", "hall.mp4", "recording.toml", "bag.mcap", "bag.csv", "notes.txt"]
     {
@@ -189,7 +191,7 @@ fn the_files_of_a_recording_in_one_file_are_it_and_what_lies_beside_it() {
 }
 
 #[test]
-fn what_is_not_there_is_refused() {
+fn unknown_scenes_and_viewpoints_are_refused() {
     let folder = walk(true);
     let (platform, scene, _) = open(&folder);
     let mut frame = platform.sample_path(&scene, &PathRequest::default(), 0).unwrap().frames.remove(0);
@@ -217,7 +219,7 @@ fn large_pictures_are_made_as_large_as_other_worlds_have_them() {
 }
 
 #[test]
-fn what_is_odd_about_poses_is_told() {
+fn a_doubt_about_poses_is_reported() {
     let folder = walk(true);
     // North and east in a world with y up.
     let line = |at: u32| format!("{at}.png,{},1.5,-{}\n", at.saturating_sub(4), at.min(4));

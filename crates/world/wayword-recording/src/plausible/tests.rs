@@ -1,3 +1,5 @@
+//! Tests of the doubt about poses, on paths that are made here in the axes of the test.
+
 use super::*;
 use std::f64::consts::FRAC_PI_2;
 
@@ -32,7 +34,7 @@ fn with_y_up(samples: Vec<Sample>) -> Vec<Sample> {
     samples.into_iter().map(turned).collect()
 }
 
-fn unheld(samples: Vec<Sample>) -> Vec<Sample> {
+fn without_orientation(samples: Vec<Sample>) -> Vec<Sample> {
     samples.into_iter().map(|sample| Sample { held: None, ..sample }).collect()
 }
 
@@ -69,11 +71,15 @@ fn a_body_that_is_taken_for_another_is_odd() {
 
 #[test]
 fn places_alone_that_keep_to_an_upright_plane_are_odd() {
-    let Some(Doubt::Odd(words)) = found(&unheld(with_y_up(level())), OPEN_GL) else { panic!("it is odd") };
+    let Some(Doubt::Odd(words)) = found(&without_orientation(with_y_up(level())), OPEN_GL) else { panic!("it is odd") };
     assert!(words.contains("write world = \"y-up\""), "{words}");
-    assert_eq!(found(&unheld(level()), OPEN_GL), None);
+    assert_eq!(found(&without_orientation(level()), OPEN_GL), None);
     let described = Description { world: Some(World::ZUp), ..Description::default() };
-    assert_eq!(doubt(&unheld(with_y_up(level())), OPEN_GL, &described), None, "what the user set is not questioned");
+    assert_eq!(
+        doubt(&without_orientation(with_y_up(level())), OPEN_GL, &described),
+        None,
+        "what the user set is not questioned"
+    );
 }
 
 #[test]
@@ -82,7 +88,7 @@ fn stairs_are_neither_refused_nor_odd() {
     let around = walk(&[[0.0, 0.0, 1.5], [0.0, 2.6, 3.0], [1.0, 2.6, 3.0], [1.0, 0.0, 4.5], [4.0, 0.0, 4.5]], 0.3);
     for samples in [straight, around] {
         assert_eq!(found(&samples, OPEN_GL), None);
-        assert_eq!(found(&unheld(samples), OPEN_GL), None);
+        assert_eq!(found(&without_orientation(samples), OPEN_GL), None);
     }
 }
 
@@ -97,7 +103,7 @@ fn drones_and_lifts_are_not_refused() {
             let axes = Axes { world, ..OPEN_GL };
             let told = found(&samples, axes);
             assert!(!matches!(told, Some(Doubt::Misread(_))), "{places:?} {tilt_rad}: {told:?}");
-            let told = found(&unheld(samples), axes);
+            let told = found(&without_orientation(samples), axes);
             assert!(!matches!(told, Some(Doubt::Misread(_))), "{places:?}: {told:?}");
         }
     }

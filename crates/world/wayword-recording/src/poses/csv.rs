@@ -1,10 +1,10 @@
-//! Poses as CSV with a header: a time or a picture, a position, and where the camera looks if that is known.
+//! Reads poses from CSV with a header: a time or a picture, a position, and optionally the direction of the camera.
 
 use super::rows::{Facing, Of, Row, Rows, number, seconds};
 use crate::axes::{Axes, Body};
 use wayword_core::DVec3;
 
-/// Where each column is.
+/// The number of each column that is read.
 struct Columns {
     of: Index,
     position: [usize; 3],
@@ -43,7 +43,7 @@ pub(super) fn read(text: &str) -> Result<Rows, String> {
     Ok(Rows { usual: Axes::of(body), knows_above: !is_euroc, rows: rows.collect::<Result<_, _>>()? })
 }
 
-/// The cells of a line, up to a quoted cell that contains the separator: all cells after it would be shifted.
+/// The cells of a line, up to a quoted cell that contains the separator: all cells after that one would be shifted.
 struct Cells<'a> {
     plain: Vec<&'a str>,
     /// The separator that the first unread cell contains, if there is such a cell.

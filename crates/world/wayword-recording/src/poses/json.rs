@@ -1,11 +1,11 @@
-//! Poses as JSON: Wayword's own list of poses, or NeRF's `transforms.json`.
+//! Reads poses from JSON: Wayword's own list of poses, or NeRF's `transforms.json`.
 
 use super::rows::{Facing, Of, Row, Rows, seconds};
 use crate::axes::{Axes, Body};
 use serde::Deserialize;
 use wayword_core::DVec3;
 
-/// Either file.
+/// The content of either file.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum PoseFile {
@@ -45,7 +45,7 @@ const EXPECTED: &str = "expected `transforms.json`, or a list of {\"image\" or \
 
 /// Reads the rows of a JSON file.
 pub(super) fn read(text: &str) -> Result<Rows, String> {
-    // An untagged enum does not say what is wrong, so invalid JSON is reported first.
+    // The error of an untagged enum does not name the fault, so invalid JSON is reported first.
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     match PoseFile::deserialize(value).map_err(|_| EXPECTED.to_owned())? {
         PoseFile::Transforms { frames } => {

@@ -1,10 +1,10 @@
-//! Lines of bare numbers: TUM (`time x y z qx qy qz qw`) and KITTI (a 3 x 4 matrix per picture).
+//! Reads poses from lines of bare numbers: TUM (`time x y z qx qy qz qw`) and KITTI (a 3 x 4 matrix per picture).
 
 use super::rows::{Facing, Of, Row, Rows, number, seconds};
 use crate::axes::{Axes, Body, World};
 use wayword_core::DVec3;
 
-/// Reads either; the first line decides which one it is.
+/// Reads either format; the length of the first line decides between them.
 pub(super) fn read(text: &str) -> Result<Rows, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| {
         let line = line.trim();

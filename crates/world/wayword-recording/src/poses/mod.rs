@@ -1,4 +1,4 @@
-//! Poses in a file beside pictures or a video.
+//! Finds and reads the pose file of a folder of pictures or of a video.
 
 mod csv;
 mod json;
@@ -18,12 +18,12 @@ use wayword_world::files;
 
 const MAX_FILE_BYTES: u64 = 256 << 20;
 const HINT: &str = "docs/RECORDINGS.md shows the pose files that can be read";
-/// Names of a folder's pose file, in the order in which they are looked for.
+/// Names of a folder's pose file, in the order in which they are tried.
 const IN_FOLDER: [&str; 6] =
     ["poses.json", "poses.csv", "poses.tum", "poses.txt", "groundtruth.txt", "transforms.json"];
 
-/// The pose file that the description names, else that of a folder, or of a file by its name (`walk.csv` for
-/// `walk.mp4`); `None` where there is none.
+/// Finds the pose file: the one that the description names, else that of a folder, or of a file by its name (`walk.csv`
+/// for `walk.mp4`); `None` if there is none.
 ///
 /// # Errors
 /// When the description names a file that does not exist.
@@ -47,7 +47,7 @@ pub(crate) fn beside(path: &Path, described: &Description) -> Result<Option<Path
     Ok(candidates.into_iter().find(|file| file.is_file()))
 }
 
-/// The track in a pose file, on the clock of pictures that were taken at `times_s` and have the names `name`.
+/// Reads the track in a pose file, on the clock of pictures that were taken at `times_s` and have the names `name`.
 ///
 /// # Errors
 /// When it cannot be read, or has no pose for any of these pictures.
@@ -96,7 +96,7 @@ pub(crate) fn track(
     })
 }
 
-/// Rows as fixes; rows of pictures that do not exist are left out.
+/// Converts rows into fixes. Rows of pictures that do not exist are left out.
 fn on_clock(rows: Vec<rows::Row>, axes: Axes, times_s: &[f64], name: &dyn Fn(usize) -> String) -> Option<Track> {
     let by_name = rows.iter().any(|row| matches!(row.of, Of::Picture(_)));
     let mut named: Vec<(String, f64)> = Vec::new();

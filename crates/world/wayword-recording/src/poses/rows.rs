@@ -1,4 +1,4 @@
-//! A line of a pose file.
+//! The common form of a line of a pose file, in every format.
 
 use crate::{
     axes::{Axes, columns},
@@ -12,12 +12,12 @@ use wayword_core::{DVec3, Heading};
 #[derive(Debug)]
 pub(super) struct Rows {
     pub(super) usual: Axes,
-    /// Whether the body's up direction is known: for EuRoC's sensor only the direction ahead is.
+    /// Whether the body's up direction is known. For EuRoC's sensor only the direction ahead is.
     pub(super) knows_above: bool,
     pub(super) rows: Vec<Row>,
 }
 
-/// A pose, as it was written down.
+/// A pose as it was recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Row {
     pub(super) of: Of,
@@ -25,7 +25,7 @@ pub(super) struct Row {
     pub(super) facing: Facing,
 }
 
-/// What a pose belongs to.
+/// The time or the picture that a pose belongs to.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Of {
     /// A time, seconds.
@@ -36,7 +36,7 @@ pub(super) enum Of {
     Number(usize),
 }
 
-/// Where the body looks.
+/// The direction in which the body looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Facing {
     Unknown,
@@ -51,7 +51,7 @@ pub(super) enum Facing {
 }
 
 impl Row {
-    /// The pose at a time, in Wayword's frame.
+    /// The fix for this pose at a time, in Wayword's frame.
     pub(super) fn fix(&self, time_s: f64, axes: Axes) -> Fix {
         let heading = match self.facing {
             Facing::Unknown => None,
@@ -65,7 +65,7 @@ impl Row {
 }
 
 impl Rows {
-    /// The poses as they were written down.
+    /// The poses as they were recorded.
     pub(super) fn samples(&self) -> Vec<Sample> {
         let held = |facing: Facing| match facing {
             Facing::Quaternion(quaternion) => columns(quaternion),
@@ -77,7 +77,7 @@ impl Rows {
     }
 }
 
-/// The part of a picture's name that is compared, without the folder and ending that a pose file may give it.
+/// The part of a picture's name that is compared. A pose file may add a folder and an ending to it.
 pub(super) fn stem(name: &str) -> String {
     let path = Path::new(name);
     let known = path
@@ -88,8 +88,8 @@ pub(super) fn stem(name: &str) -> String {
     stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// A number, or the words for what is wrong with it. `nan` is accepted, because trackers write it while they are lost;
-/// such rows are dropped later.
+/// Parses a number; the error is in words. `nan` is accepted, because trackers write it while they are lost; such rows are
+/// dropped later.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("{:?} is not a number", text.chars().take(40).collect::<String>()))
 }

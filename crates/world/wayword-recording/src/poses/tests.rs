@@ -1,3 +1,5 @@
+//! Tests of all formats of pose files.
+
 use super::*;
 use proptest::prelude::*;
 use wayword_core::DVec3;
@@ -17,7 +19,7 @@ fn at(track: &Track, time_s: f64) -> (DVec3, f64) {
 }
 
 #[test]
-fn every_format_tells_the_same_walk() {
+fn every_pose_format_gives_the_same_walk() {
     let usual = Description::default();
     // Two metres east, looking east.
     let files = [
@@ -65,13 +67,13 @@ fn a_tracker_that_was_lost_leaves_no_pose() {
 }
 
 #[test]
-fn clocks_that_never_meet_are_told_with_both_their_times() {
+fn clocks_that_never_meet_are_reported_with_both_time_spans() {
     let error = read("poses.csv", "time,x,y\n5,0,0\n6,1,1\n", 1_700_000_000.0, &Description::default()).unwrap_err();
     assert!(error.contains("from 5 to 6 s") && error.contains("from 1700000000"), "{error}");
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line() {
+fn pose_file_errors_name_the_line() {
     let usual = Description::default();
     for (name, text, told) in [
         ("poses.csv", "time,x\n1,2\n", "line 1: the header needs"),
@@ -149,7 +151,7 @@ fn with_y_up(is_held: bool) -> String {
 }
 
 #[test]
-fn a_level_walk_that_would_climb_is_refused_until_the_user_says_what_is_up() {
+fn a_level_walk_that_would_climb_is_refused_until_the_user_sets_the_axes() {
     let usual = Description::default();
     let error = read("poses.csv", &with_y_up(true), 0.0, &usual).unwrap_err();
     assert!(error.contains("poses.csv") && error.contains("path climbs straight up"), "{error}");
@@ -160,7 +162,7 @@ fn a_level_walk_that_would_climb_is_refused_until_the_user_says_what_is_up() {
 }
 
 #[test]
-fn places_alone_that_would_climb_are_told_of() {
+fn positions_alone_that_would_climb_raise_a_doubt() {
     let track = read("poses.csv", &with_y_up(false), 0.0, &Description::default()).unwrap();
     assert!(track.doubt().unwrap().contains("write world = \"y-up\" into a recording.toml"), "{:?}", track.doubt());
 }

@@ -1,4 +1,4 @@
-//! AV1, decoded by rav1d, a port of dav1d to Rust.
+//! Decodes AV1 with rav1d, a port of dav1d to Rust.
 
 use super::{
     colour::{Chroma, Colour, Plane, Planes},
@@ -10,7 +10,7 @@ use re_rav1d::dav1d::{Decoder, Error, Picture, PixelLayout, PlanarImageComponent
 /// A decoder of one stream.
 pub(super) struct Av1 {
     decoder: Decoder,
-    /// What the container says of the colours.
+    /// The colours that the container gives.
     colour: Colour,
 }
 
@@ -89,7 +89,7 @@ fn hand_out(picture: &Picture, container: Colour, out: &mut Out<'_>) -> Result<(
     out(sample, &planes)
 }
 
-/// What the stream says of its colours.
+/// The colours that the stream gives.
 fn said(picture: &Picture) -> Colour {
     let full_range = Some(picture.color_range() == YUVRange::Full);
     let matrix = Colour::coded(picture.matrix_coefficients() as u32);

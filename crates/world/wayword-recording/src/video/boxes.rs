@@ -1,7 +1,7 @@
-//! The boxes of which an MP4 file is made (ISO/IEC 14496-12, section 4.2).
+//! Reads the boxes that form an MP4 file (ISO/IEC 14496-12, section 4.2).
 //!
-//! Read here and not by a crate, because little of them is needed and no length may be trusted: `re_mp4` 0.5 makes as
-//! many samples as a header of 20 bytes claims (four thousand million) and refuses a QuickTime file, which has no
+//! This is done here and not by a crate, because few boxes are needed and no length may be trusted. `re_mp4` 0.5 makes as
+//! many samples as a header of 20 bytes claims (four thousand million), and it refuses QuickTime files, which have no
 //! `ftyp`.
 
 /// A box: its kind and its content.
@@ -27,7 +27,7 @@ pub(super) fn find<'a>(within: &'a [u8], kind: &[u8; 4]) -> Option<&'a [u8]> {
     boxes(within).find(|found| found.kind == *kind).map(|found| found.body)
 }
 
-/// The first box of a kind; an error where there is none.
+/// The first box of a kind; an error if there is none.
 pub(super) fn need<'a>(within: &'a [u8], kind: &[u8; 4]) -> Result<&'a [u8], String> {
     find(within, kind).ok_or_else(|| format!("has no box `{}`", name(kind)))
 }
@@ -51,7 +51,7 @@ impl Header {
     /// Longest header, bytes.
     pub(super) const MOST: usize = 16;
 
-    /// The header at the beginning of `start`; what holds the box ends after `left` bytes.
+    /// The header at the beginning of `start`. The surroundings of the box end after `left` bytes.
     pub(super) fn read(start: &[u8], left: u64) -> Option<Self> {
         let mut fields = Fields::new(start);
         let short = fields.u32().ok()?;
@@ -132,7 +132,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Adds the box in which something is wrong to a message.
+/// Adds the name of the box to an error message.
 pub(super) fn within(kind: &'static str) -> impl Fn(String) -> String {
     move |reason| format!("box `{kind}` {reason}")
 }
@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn boxes_are_read_up_to_what_is_none() {
+    fn boxes_end_at_the_first_bytes_that_are_no_box() {
         let bytes =
             [&[0, 0, 0, 9][..], b"abcd", &[7], &[0, 0, 0, 1], b"long", &17_u64.to_be_bytes(), &[8], &[0, 0, 0, 0]]
                 .concat();
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_that_is_larger_than_what_holds_it_is_none() {
+    fn a_box_larger_than_its_container_is_none() {
         assert_eq!(boxes(b"\0\0\0\x0aabcd\x07").count(), 0);
         assert_eq!(boxes(b"\0\0\0\x07abcd\x07").count(), 0);
         assert_eq!(boxes(b"\0\0\0\x01abcd\xff\xff\xff\xff\xff\xff\xff\xff").count(), 0);

@@ -7,11 +7,11 @@ use super::{
     h264::{self, H264},
 };
 
-/// A codec that can be read, with what its decoder needs to know.
+/// A codec that can be read, with the settings of its decoder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Codec {
     H264(h264::Setup),
-    /// What the container says of the colours.
+    /// With the colours that the container gives.
     Av1(Colour),
 }
 

@@ -1,14 +1,14 @@
-//! Turns the planes of a decoder into RGB, as the stream says (ITU-T H.273). Only integers are used, so that every
-//! machine makes the same picture.
+//! Turns the planes of a decoder into RGB, with the colours that the stream gives (ITU-T H.273). Only integers are used,
+//! so that every machine makes the same picture.
 
 use wayword_core::Image;
 
 /// Fixed point: 1.0.
 const ONE: f64 = 65536.0;
-/// `matrix_coefficients` that say nothing.
+/// The value of `matrix_coefficients` that leaves the matrix open.
 const UNSPECIFIED: u32 = 2;
 
-/// What a stream or its container says of the colours; `None` where it says nothing.
+/// The colours that a stream or its container gives; `None` for those that it leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Colour {
     /// `matrix_coefficients` of H.273, table 4.
@@ -23,7 +23,7 @@ impl Colour {
         (matrix != UNSPECIFIED).then_some(matrix)
     }
 
-    /// What `self` says, and what `other` says where `self` says nothing.
+    /// The colours of `self`, and those of `other` for the ones that `self` leaves open.
     pub(super) fn or(self, other: Self) -> Self {
         Self { matrix: self.matrix.or(other.matrix), full_range: self.full_range.or(other.full_range) }
     }
@@ -57,7 +57,7 @@ impl<'a> Plane<'a> {
     }
 }
 
-/// Planes of colour differences. A shift says by how many bits the plane is smaller in that direction.
+/// Planes of colour differences. A shift is the number of bits by which the plane is smaller in that direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chroma<'a> {
     pub(super) blue: Plane<'a>,
@@ -71,10 +71,10 @@ pub(super) struct Chroma<'a> {
 pub(super) struct Planes<'a> {
     pub(super) width_px: u32,
     pub(super) height_px: u32,
-    /// Bits of a sample: 8 are kept in one byte, more in two.
+    /// Bits of a sample: 8 take one byte, more take two.
     pub(super) bits: u32,
     pub(super) brightness: Plane<'a>,
-    /// `None` where all is grey.
+    /// `None` if all is grey.
     pub(super) chroma: Option<Chroma<'a>>,
     pub(super) colour: Colour,
 }
@@ -138,7 +138,7 @@ pub(super) fn picture(planes: &Planes<'_>) -> Result<Image, String> {
     Image::new(planes.width_px, planes.height_px, rgb).map_err(|error| error.to_string())
 }
 
-/// Turns one row into RGB, from samples of `BYTES` bytes; `None` where there are too few samples.
+/// Turns one row into RGB, from samples of `BYTES` bytes; `None` if there are too few samples.
 fn line<const BYTES: usize>(planes: &Planes<'_>, factors: &Factors, y: usize, rgb: &mut [u8]) -> Option<()> {
     let width = planes.width_px as usize;
     let brightness = planes.brightness.row(y, width * BYTES)?;
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn black_white_and_red_are_what_the_standards_say() {
+    fn picture_converts_black_white_and_red_by_the_standards() {
         let said = |matrix, full_range| Colour { matrix: Some(matrix), full_range: Some(full_range) };
         assert_eq!(pixel(Colour::default(), 8, [16, 128, 128]), [0, 0, 0]);
         assert_eq!(pixel(Colour::default(), 8, [235, 128, 128]), [255, 255, 255]);

@@ -1,4 +1,4 @@
-//! What the decoders of all codecs have in common.
+//! The common interface of the decoders of all codecs.
 
 use super::colour::Planes;
 use crate::size;
@@ -8,12 +8,12 @@ use crate::size;
 pub(super) struct Coded<'a> {
     /// Its index in the order of decoding.
     pub(super) sample: usize,
-    /// When it is shown, ticks.
+    /// The time at which it is shown, ticks.
     pub(super) shown: i64,
     pub(super) bytes: &'a [u8],
 }
 
-/// Takes a picture: the sample that it came from, and its planes.
+/// Receives the planes of a picture, with the sample that it came from.
 pub(super) type Out<'a> = dyn FnMut(usize, &Planes<'_>) -> Result<(), String> + 'a;
 
 /// A decoder of one stream.

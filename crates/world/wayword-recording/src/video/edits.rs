@@ -1,4 +1,4 @@
-//! Which pictures a player shows, in which order, and when, by edit lists (ISO/IEC 14496-12, section 8.6.6).
+//! Applies edit lists: which pictures a player shows, in which order, and when (ISO/IEC 14496-12, section 8.6.6).
 
 use super::{
     boxes::{Fields, find, within},
@@ -17,9 +17,9 @@ pub(super) struct Shown {
 /// The part of a track that is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Edit {
-    /// Time at the start during which nothing is shown, ticks of the movie.
+    /// Time at the start without a picture, ticks of the movie.
     wait: u64,
-    /// Where in the track the shown part begins, ticks of the track.
+    /// Beginning of the shown part, ticks of the track.
     start: i64,
     /// Length of the shown part, ticks of the movie; 0 means until the end.
     length: u64,
@@ -32,7 +32,7 @@ pub(super) struct Clocks {
     pub(super) track: u32,
 }
 
-/// Reads the edit list of a track; `None` where the whole track is shown.
+/// Reads the edit list of a track; `None` if the whole track is shown.
 pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
     let Some(elst) = find(trak, b"edts").and_then(|edts| find(edts, b"elst")) else { return Ok(None) };
     let read = || -> Result<Vec<(u64, i64)>, String> {
@@ -48,7 +48,7 @@ pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
         match found {
             None if start < 0 => wait = wait.saturating_add(length),
             None => found = Some(Edit { wait, start, length }),
-            // An empty piece at the end shows nothing.
+            // An empty piece at the end has no pictures.
             Some(_) if start < 0 => {}
             Some(_) => return Err("has an edit list of several pieces (box `elst`), which cannot be read".to_owned()),
         }
@@ -56,7 +56,7 @@ pub(super) fn edit(trak: &[u8]) -> Result<Option<Edit>, String> {
     Ok(found)
 }
 
-/// Length of a piece and where it starts; -1 for an empty piece.
+/// Length of a piece and its start; -1 for an empty piece.
 fn entry(row: &[u8], version: u8) -> Option<(u64, i64)> {
     let mut fields = Fields::new(row);
     let length = fields.long(version).ok()?;
@@ -65,11 +65,11 @@ fn entry(row: &[u8], version: u8) -> Option<(u64, i64)> {
     Some((length, start.clamp(-1, 1 << 56)))
 }
 
-/// The pictures that are shown, in the order in which they are shown.
+/// The pictures that a player shows, in its order.
 pub(super) fn shown(samples: &[Sample], edit: Option<Edit>, clocks: Clocks) -> Vec<Shown> {
     let (movie, track) = (f64::from(clocks.movie), f64::from(clocks.track));
-    // Without an edit list the first picture is the start, because recorders that cut a stream count from when the
-    // stream began.
+    // Without an edit list the first picture is the start, because recorders that cut a stream count from the
+    // beginning of that stream.
     let first = samples.iter().map(|sample| sample.shown).min().unwrap_or(0);
     let Edit { wait, start, length } = edit.unwrap_or(Edit { wait: 0, start: first, length: 0 });
     // Lengths are rounded to the movie's ticks, so a picture that begins within the last tick begins after the end.
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_off_is_not_shown() {
+    fn shown_leaves_out_pictures_outside_the_edit() {
         let edit = Edit { wait: 500, start: 3, length: 200 };
         assert_eq!(of(Some(edit)), [(0.5, 3), (0.6, 2)]);
     }

@@ -1,4 +1,4 @@
-//! The sample entry of a track, which says how its pictures are coded (ISO/IEC 14496-12, section 8.5.2).
+//! Reads the sample entry of a track, which names the codec of its pictures (ISO/IEC 14496-12, section 8.5.2).
 
 use super::{
     boxes::{Atom, Fields, boxes, find, name, need, within},
@@ -42,7 +42,7 @@ pub(super) struct Entry {
     pub(super) codec: NamedCodec,
     pub(super) width_px: u16,
     pub(super) height_px: u16,
-    /// What the container says of the colours.
+    /// The colours that the container gives.
     pub(super) colour: Colour,
 }
 
@@ -73,7 +73,7 @@ fn named(kind: &[u8; 4]) -> String {
         .map_or_else(|| format!("`{}`", name(kind)), |(_, name)| (*name).to_owned())
 }
 
-/// The colours in a `colr` box. ISO's `nclx` says the range, QuickTime's `nclc` does not.
+/// Reads the colours in a `colr` box. ISO's `nclx` contains the range, QuickTime's `nclc` does not.
 fn colour(within_entry: &[u8]) -> Result<Colour, String> {
     let Some(colr) = find(within_entry, b"colr") else { return Ok(Colour::default()) };
     let mut fields = Fields::new(colr);

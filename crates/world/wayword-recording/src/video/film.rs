@@ -1,4 +1,4 @@
-//! The pictures of an MP4 file, numbered in the order in which they are shown.
+//! Decodes the pictures of an MP4 file, numbered in the order in which they are shown.
 
 use super::{
     colour,
@@ -28,8 +28,8 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Opens a file and reads which pictures it holds, but decodes none. `camera` is the number of the track as the
-    /// file counts them (`"1"`); it is needed only where there are several.
+    /// Opens a file and reads the list of its pictures, but decodes none. `camera` is the number of the track as the
+    /// file counts them (`"1"`); it is needed only if there are several.
     ///
     /// # Errors
     /// When it is not an MP4 file, is broken, has no such camera, or its pictures are in a codec that cannot be read.
@@ -41,7 +41,7 @@ impl Film {
         Ok(Self { file: file.to_owned(), movie, times_s })
     }
 
-    /// When each picture is shown, seconds from the start of the video, in ascending order (equal times may follow).
+    /// The time at which each picture is shown, seconds from the start of the video, ascending (equal times may follow).
     pub(crate) fn times_s(&self) -> &[f64] {
         &self.times_s
     }
@@ -101,7 +101,7 @@ impl Film {
             }
             let key = self.key(file, *sample, fed)?;
             match runs.last_mut() {
-                // No sample between can be skipped.
+                // The samples between them have to be decoded.
                 Some(run) if key <= fed => run.end = sample + 1,
                 _ => runs.push(key..sample + 1),
             }
@@ -109,7 +109,7 @@ impl Film {
         Ok(runs)
     }
 
-    /// The last sample from which the wanted one can be decoded; `fed` where there is none after `fed`.
+    /// The last sample from which the wanted one can be decoded; `fed` if there is none after `fed`.
     fn key(&self, file: &mut File, wanted: usize, fed: usize) -> Result<usize, String> {
         for key in (fed..=wanted).rev().filter(|at| self.movie.samples[*at].is_key) {
             if self.movie.codec.can_begin_with(&self.sample(file, key)?) {
@@ -120,7 +120,7 @@ impl Film {
     }
 }
 
-/// Keeps decoded pictures until it is their turn to be handed out.
+/// Holds decoded pictures until it is their turn to be handed out.
 struct Desk<'a> {
     movie: &'a Movie,
     /// The numbers of the wanted pictures, by sample.
@@ -149,7 +149,7 @@ impl<'a> Desk<'a> {
         Ok(())
     }
 
-    /// Hands over the pictures whose turn it is.
+    /// Hands over the pictures that are next in order.
     fn hand_over(&mut self, take: &mut Take<'_>) -> Result<(), PlatformError> {
         while let Some(number) = self.due.peek() {
             let Some(picture) = self.done.remove(number) else { break };

@@ -1,5 +1,5 @@
-//! Samples of fragmented files. Recorders write these so that a recording survives a loss of power (ISO/IEC 14496-12,
-//! section 8.8).
+//! Reads the samples of fragmented files. Recorders write these so that a recording survives a loss of power (ISO/IEC
+//! 14496-12, section 8.8).
 
 use super::{
     boxes::{Atom, Fields, boxes, find, need, within},
@@ -20,7 +20,7 @@ const LATER: u32 = 0x800;
 /// `sample_is_non_sync_sample` among a sample's flags.
 const NOT_A_KEY: u32 = 0x1_0000;
 
-/// Defaults for a sample where its fragment says nothing else.
+/// Values for samples without their own.
 #[derive(Debug, Clone, Copy, Default)]
 struct Usual {
     duration: u32,
@@ -48,9 +48,9 @@ pub(super) struct Fragments {
     track: u32,
     usual: Usual,
     file_bytes: u64,
-    /// When the next sample is decoded, ticks.
+    /// Time at which the next sample is decoded, ticks.
     decoded: i64,
-    /// Where the last run of samples ended.
+    /// Offset at which the last run of samples ended.
     end: u64,
 }
 
@@ -60,7 +60,7 @@ impl Fragments {
         Ok(Self { track, usual, file_bytes, decoded: 0, end: 0 })
     }
 
-    /// Adds the samples of the fragment whose box `moof` begins at `start`.
+    /// Adds the samples of a fragment; its box `moof` begins at `start`.
     pub(super) fn add(&mut self, moof: &[u8], start: u64, samples: &mut Vec<Sample>) -> Result<(), String> {
         self.end = start;
         for traf in boxes(moof).filter(|found| found.kind == *b"traf") {

@@ -1,4 +1,4 @@
-//! H.264, decoded by Cisco's OpenH264.
+//! Decodes H.264 with Cisco's OpenH264.
 
 use super::{
     boxes::{Fields, within},
@@ -30,7 +30,7 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    /// Reads an `avcC` box. `colour` is what the container says; it counts where the stream says nothing.
+    /// Reads an `avcC` box. `colour` has the container's colours; they count if the stream leaves them open.
     pub(super) fn read(record: &[u8], colour: Colour) -> Result<Self, String> {
         let (length_bytes, units) = taken_apart(record).map_err(within("avcC"))?;
         let mut setup = Self { length_bytes, parameters: Vec::new(), colour };
@@ -63,14 +63,14 @@ impl Setup {
         })
     }
 
-    /// Whether decoding can begin with a sample. The container's mark is not enough: it also marks pictures after which
-    /// the first pictures are still wrong.
+    /// Whether decoding can begin with a sample. The container's mark is not enough, because it also marks samples that are
+    /// followed by wrong pictures at first.
     pub(super) fn can_begin_with(&self, sample: &[u8]) -> bool {
         self.units(sample).any(|unit| unit.is_ok_and(|unit| kind(unit) == IDR))
     }
 }
 
-/// The bytes in which a length is written, and the parameter sets.
+/// The number of bytes of a length, and the parameter sets.
 fn taken_apart(record: &[u8]) -> Result<(usize, Vec<&[u8]>), String> {
     let mut fields = Fields::new(record);
     fields.bytes(4)?;
@@ -90,7 +90,7 @@ fn kind(unit: &[u8]) -> u8 {
     unit.first().map_or(0, |first| first & 31)
 }
 
-/// Reads a parameter set; an error where OpenH264 cannot decode the stream, or its pictures are too large.
+/// Reads a parameter set; an error if OpenH264 cannot decode the stream, or its pictures are too large.
 fn possible(unit: &[u8]) -> Result<Sps, String> {
     let sps = Sps::read(unit).ok_or("has a broken sequence parameter set")?;
     size_is_possible(sps.width_px, sps.height_px)?;
@@ -107,8 +107,8 @@ fn possible(unit: &[u8]) -> Result<Sps, String> {
 pub(super) struct H264 {
     setup: Setup,
     decoder: Decoder,
-    /// Samples that were fed and whose pictures have not come out, in the order in which they are shown. OpenH264 gives
-    /// no times back, but its pictures come in this order.
+    /// Samples that were fed and have not come out as pictures, in the order in which they are shown. OpenH264 returns no
+    /// times, but its pictures come in this order.
     inside: BTreeSet<(i64, usize)>,
     has_begun: bool,
 }

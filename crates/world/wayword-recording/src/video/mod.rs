@@ -1,4 +1,4 @@
-//! MP4 files with H.264 or AV1.
+//! Reads videos: MP4 files with H.264 or AV1.
 
 mod av1;
 mod boxes;
@@ -28,7 +28,7 @@ use crate::{
 use std::path::{Path, PathBuf};
 use wayword_core::{PlatformError, SceneId};
 
-/// A video, with poses in a file beside it or without any.
+/// A video as a recording, with poses in a file of the same folder or without any.
 pub(crate) struct FilmFile {
     path: PathBuf,
     scene: SceneId,

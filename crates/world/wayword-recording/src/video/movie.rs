@@ -15,13 +15,13 @@ use std::{
     io::{Read, Seek, SeekFrom},
 };
 
-/// Most bytes of the boxes that say where pictures are: about 50 for each of [`tables::MAX_SAMPLES`].
+/// Most bytes of the boxes that describe pictures: about 50 for each of [`tables::MAX_SAMPLES`].
 const MAX_DESCRIBING_BYTES: u64 = 512 << 20;
 
 /// Most boxes of a file: two for each picture.
 const MAX_BOXES: u64 = 2 * tables::MAX_SAMPLES;
 
-/// What to do about a file that cannot be read.
+/// The way out of a file that cannot be read.
 pub(super) const HINT: &str = crate::kind::ENCODE;
 const CAMERA_HINT: &str = "write `camera = \"NUMBER\"` into the .toml file beside it";
 
@@ -50,7 +50,7 @@ impl Movie {
     }
 }
 
-/// Why a file cannot be read, and what to do.
+/// The reason why a file cannot be read, and a way out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub(super) reason: String,
@@ -102,7 +102,7 @@ impl Parts {
     }
 }
 
-/// The header of the box at a place of a file; `None` where there is none.
+/// The header of the box at a place of a file; `None` if there is none.
 fn header_at(file: &mut File, start: u64, file_bytes: u64) -> Result<Option<Header>, String> {
     let left = file_bytes - start;
     let bytes = bytes_at(file, start, left.min(Header::MOST as u64))?;
@@ -120,7 +120,7 @@ pub(super) fn bytes_at(file: &mut File, start: u64, count: u64) -> Result<Vec<u8
     Ok(bytes)
 }
 
-/// A track that holds pictures, with what is needed to choose among several.
+/// A track with pictures, and the data to choose among several tracks.
 struct VideoTrack<'a> {
     number: u32,
     trak: &'a [u8],
@@ -130,7 +130,7 @@ struct VideoTrack<'a> {
 }
 
 impl<'a> VideoTrack<'a> {
-    /// Reads a track; `None` where it holds sound or other things.
+    /// Reads a track; `None` if it holds sound or other things.
     fn read(trak: &'a [u8]) -> Result<Option<Self>, String> {
         let Some(mdia) = find(trak, b"mdia") else { return Ok(None) };
         let Some(hdlr) = find(mdia, b"hdlr") else { return Ok(None) };

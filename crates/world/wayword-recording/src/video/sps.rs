@@ -1,8 +1,8 @@
-//! Sequence parameter sets, in which an H.264 stream describes itself (ITU-T H.264, section 7.3.2.1.1 and annex E).
+//! Reads sequence parameter sets, the description of an H.264 stream (ITU-T H.264, section 7.3.2.1.1 and annex E).
 //!
-//! `h264-reader` reads the bits and how colours are sampled. It could read a whole parameter set too, but it refuses
-//! those whose level is too low for their size, that are cut off after the colours, or whose bytes could be a false
-//! start. Players show such videos all the same.
+//! `h264-reader` reads the bits and the sampling of colours. It could read a whole parameter set too, but it refuses sets
+//! with a level that is too low for their size, sets that are cut off after the colours, and sets with bytes that could be
+//! a false start. Players show such videos all the same.
 
 use super::colour::Colour;
 use h264_reader::{
@@ -11,10 +11,10 @@ use h264_reader::{
 };
 use wayword_core::contained;
 
-/// Most bytes of a unit that are read: all that matters comes before.
+/// Most bytes of a unit that are read: the needed fields come before this.
 const LONGEST: usize = 1 << 14;
 
-/// The part of a sequence parameter set that matters here.
+/// The part of a sequence parameter set that is needed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Sps {
     /// Size as coded, which may be a little larger than the shown picture.
@@ -28,7 +28,7 @@ pub(super) struct Sps {
 }
 
 impl Sps {
-    /// Reads a NAL unit of type 7; `None` where it is broken.
+    /// Reads a NAL unit of type 7; `None` if it is broken.
     pub(super) fn read(unit: &[u8]) -> Option<Self> {
         let mut zeros = 0;
         let plain = unit.iter().skip(1).take(LONGEST).copied().filter(|byte| {
@@ -76,7 +76,7 @@ fn parameters(bits: &mut impl BitRead) -> Result<Sps, SpsError> {
     })
 }
 
-/// How the order of pictures is coded.
+/// Skips the coding of the pictures' order.
 fn order(bits: &mut impl BitRead) -> Result<(), SpsError> {
     match bits.read_ue("pic_order_cnt_type")? {
         0 => drop(bits.read_ue("log2_max_pic_order_cnt_lsb_minus4")?),

@@ -1,5 +1,5 @@
-//! The tables of `stbl`, which say where the samples of a track are and when they are shown (ISO/IEC 14496-12, sections
-//! 8.6 and 8.7).
+//! Reads the tables of `stbl`, which list the places of a track's samples and their times (ISO/IEC 14496-12, sections 8.6
+//! and 8.7).
 
 use super::boxes::{Fields, find, need, within};
 
@@ -9,12 +9,12 @@ pub(super) const MAX_SAMPLES: u64 = 10_000_000;
 /// One coded picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Sample {
-    /// Where it is in the file.
+    /// Offset in the file, bytes.
     pub(super) offset: u64,
     pub(super) bytes: u32,
-    /// When it is shown, ticks of the track.
+    /// Time at which it is shown, ticks of the track.
     pub(super) shown: i64,
-    /// Whether decoding can begin with it, as the container says.
+    /// Whether decoding can begin with it according to the container.
     pub(super) is_key: bool,
 }
 
@@ -72,7 +72,7 @@ fn sizes(stsz: &[u8], file_bytes: u64) -> Result<Sizes, String> {
     Ok(Sizes::All { bytes, count: count as usize })
 }
 
-/// Refuses more samples than the file can hold.
+/// Returns an error for more samples than the file can hold.
 pub(super) fn believable(count: u64, bytes: u32, file_bytes: u64) -> Result<(), String> {
     if count > MAX_SAMPLES || count.saturating_mul(u64::from(bytes)) > file_bytes {
         return Err(format!("claims {count} samples of {bytes} bytes or more, but the file has {file_bytes} bytes"));
@@ -80,7 +80,7 @@ pub(super) fn believable(count: u64, bytes: u32, file_bytes: u64) -> Result<(), 
     Ok(())
 }
 
-/// Where each sample begins: chunks lie at listed offsets, and the samples of a chunk follow each other.
+/// The offset of each sample: chunks have listed offsets, and the samples of a chunk follow each other.
 fn offsets(stbl: &[u8], sizes: &Sizes) -> Result<Vec<u64>, String> {
     let chunks: Vec<u64> = match find(stbl, b"stco") {
         Some(stco) => {
@@ -123,7 +123,7 @@ fn offsets(stbl: &[u8], sizes: &Sizes) -> Result<Vec<u64>, String> {
     Ok(offsets)
 }
 
-/// When each sample is shown: the time at which it is decoded, plus its delay.
+/// The time at which each sample is shown: the time at which it is decoded, plus its delay.
 fn shown(stbl: &[u8], count: usize) -> Result<Vec<i64>, String> {
     let (mut fields, ..) = Fields::full(need(stbl, b"stts")?)?;
     let lengths = runs(&mut fields).map_err(within("stts"))?;
@@ -156,7 +156,7 @@ fn word(row: &[u8], at: usize) -> u32 {
     Fields::new(row.get(at..).unwrap_or_default()).u32().unwrap_or(0)
 }
 
-/// The numbers (from 1) of the samples with which decoding can begin, ascending; `None` where it can begin with every
+/// The numbers (from 1) of the samples with which decoding can begin, ascending; `None` if it can begin with every
 /// sample.
 fn keys(stbl: &[u8]) -> Result<Option<Vec<u64>>, String> {
     let Some(stss) = find(stbl, b"stss") else { return Ok(None) };

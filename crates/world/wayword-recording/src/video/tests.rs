@@ -33,7 +33,7 @@ fn is_white(picture: &Image, bar: usize, height: f64) -> bool {
 }
 
 /// The number that the bars of a picture show; both halves have to agree.
-fn told(picture: &Image) -> usize {
+fn number_in_bars(picture: &Image) -> usize {
     let number = |height, white| (0..6).map(|bar| usize::from(is_white(picture, bar, height) == white) << bar).sum();
     let (above, below): (usize, usize) = (number(0.25, true), number(0.75, false));
     assert_eq!(above, below, "the halves of a picture belong to different numbers");
@@ -51,7 +51,7 @@ fn holds(name: &str, count: usize, first: usize) {
         let numbers: Vec<usize> = taken.iter().map(|(number, _)| *number).collect();
         assert_eq!(numbers, wanted, "{name}");
         for (number, picture) in taken {
-            assert_eq!(told(&picture), first + number, "{name}, asked for {wanted:?}");
+            assert_eq!(number_in_bars(&picture), first + number, "{name}, asked for {wanted:?}");
         }
     }
 }
@@ -92,14 +92,14 @@ fn other_containers_hold_the_same() {
 }
 
 #[test]
-fn what_was_cut_off_without_coding_again_is_not_shown() {
+fn pictures_outside_the_edit_list_are_not_shown() {
     holds("cut.mp4", 24, 16);
     // The cut was at 1.55 s, and the next picture was at 1.6 s.
     near(film("cut.mp4").times_s(), tenths(24).map(|time_s| time_s + 0.05));
 }
 
 #[test]
-fn uneven_times_are_kept() {
+fn uneven_times_stay_uneven() {
     holds("uneven.mp4", 12, 0);
     // As ffprobe lists them.
     near(film("uneven.mp4").times_s(), [0.0, 0.1, 0.2, 0.5, 0.6, 0.8, 1.1, 1.3, 1.4, 1.8, 1.9, 2.0]);
@@ -116,7 +116,7 @@ fn sizes_need_not_be_those_of_blocks() {
 }
 
 #[test]
-fn a_phone_that_was_held_upright_is_shown_upright() {
+fn a_video_of_an_upright_phone_is_shown_upright() {
     let turned = pictures(&film("turned.mp4"), &[5]).unwrap().remove(0).1;
     let lying = pictures(&film("baseline.mp4"), &[5]).unwrap().remove(0).1;
     assert_eq!((turned.width_px(), turned.height_px()), (64, 96));
@@ -128,7 +128,7 @@ fn a_phone_that_was_held_upright_is_shown_upright() {
 }
 
 #[test]
-fn colours_are_what_the_stream_says() {
+fn colours_follow_the_stream() {
     for name in ["bt709.mp4", "full_range.mp4", "av1_bt709.mp4"] {
         let picture = pictures(&film(name), &[0]).unwrap().remove(0).1;
         for (bar, x) in [16, 48, 80].into_iter().enumerate() {
@@ -143,7 +143,7 @@ fn colours_are_what_the_stream_says() {
 }
 
 #[test]
-fn what_cannot_be_read_is_named_with_what_to_do() {
+fn unreadable_videos_are_named_with_a_hint() {
     let said = |name: &str, camera| Film::open(&fixture(name), camera).unwrap_err().to_string();
     let hevc = said("hevc.mp4", None);
     assert!(hevc.contains("HEVC (H.265)") && hevc.contains("ffmpeg -i IN -c:v libx264"), "{hevc}");
@@ -244,7 +244,7 @@ proptest! {
 
 /// Files with the ending .mp4 that are something else, as users may have them.
 #[test]
-fn what_is_no_mp4_is_named_for_what_it_is() {
+fn files_that_are_no_mp4_are_named_by_their_kind() {
     let folder = tempfile::tempdir().unwrap();
     let webm = b"\x1a\x45\xdf\xa3\x9fB\x86\x81\x01B\xf7\x81\x01B\xf2\x81\x04B\xf3\x81\x08B\x82\x84webm";
     for (bytes, told) in [

@@ -1,11 +1,11 @@
-//! How a picture has to be turned before it is shown: phones do not turn their pictures, but write down how they were
-//! held (ISO/IEC 14496-12, section 8.3.2, `matrix`).
+//! Turns a picture before it is shown. Phones do not turn their pictures, but record how the camera was turned
+//! (ISO/IEC 14496-12, section 8.3.2, `matrix`).
 
 use super::boxes::Fields;
 use wayword_core::Image;
 
-/// A turn by quarters, with or without a mirror. The fields say where a step to the right and a step down in the coded
-/// picture lead in the shown one, as (right, down).
+/// A turn by quarters, with or without a mirror. The fields are the steps in the shown picture, as (right, down), that
+/// correspond to a step to the right and a step down in the coded one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Turn {
     right: (i8, i8),
@@ -15,7 +15,7 @@ pub(super) struct Turn {
 impl Turn {
     pub(super) const NONE: Self = Self { right: (1, 0), down: (0, 1) };
 
-    /// Reads it from `tkhd`; a matrix that is not a turn by quarters changes nothing.
+    /// Reads the turn from `tkhd`; a matrix that is no turn by quarters counts as no turn.
     pub(super) fn read(tkhd: &[u8]) -> Result<Self, String> {
         let (mut fields, version, _) = Fields::full(tkhd)?;
         // Times, number, duration; then layer, group, volume.
@@ -29,7 +29,7 @@ impl Turn {
         Ok(if is_turn { turn } else { Self::NONE })
     }
 
-    /// The picture as it is shown.
+    /// The picture as it should be shown.
     pub(super) fn apply(self, coded: Image) -> Image {
         if self == Self::NONE {
             return coded;
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phone_that_was_held_upright_gives_upright_pictures() {
+    fn apply_turns_pictures_of_an_upright_phone() {
         const ONE: i32 = 1 << 16;
         assert_eq!(turned([ONE, 0, 0, ONE]), (3, vec![1, 2, 3]));
         // A quarter clockwise: the left becomes the top.

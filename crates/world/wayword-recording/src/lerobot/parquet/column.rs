@@ -15,7 +15,7 @@ use std::{
 };
 use wayword_core::contain::decoded;
 
-/// A column in a row group, and how far it has been read.
+/// A column in a row group, with the position up to which it was read.
 pub(super) struct Column {
     reader: ColumnReader,
     /// Number of values that pages announced since the last request.
@@ -55,7 +55,7 @@ impl Column {
         }
     }
 
-    /// The bytes of the next row, or `Some(None)` where it has none; `None` after the last row.
+    /// The bytes of the next row, or `Some(None)` if it has none; `None` after the last row.
     ///
     /// # Errors
     /// When the file is broken.

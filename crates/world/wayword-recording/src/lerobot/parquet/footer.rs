@@ -69,7 +69,7 @@ fn decode(footer: &[u8], file_bytes: u64) -> Result<ParquetMetaData, String> {
     Ok(about)
 }
 
-/// Refuses what a file of this length cannot hold.
+/// Returns an error if the footer announces more than a file of this length can hold.
 fn check(about: &ParquetMetaData, file_bytes: u64) -> Result<(), String> {
     let (mut rows, mut bytes) = (0_u64, 0_u64);
     for group in about.row_groups() {

@@ -35,7 +35,7 @@ const USUAL_VALUES: u64 = 16 << 20;
 const MAX_VALUES_PER_BYTE: u64 = 64;
 const MOST_VALUES: u64 = 64 << 20;
 
-/// Where a column lies in its file; `None` where the numbers are impossible.
+/// The byte range of a column in its file; `None` if the numbers are impossible.
 pub(super) fn place(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
     let data = chunk.data_page_offset();
     // Some writers write 0 where there is no dictionary.
@@ -92,7 +92,7 @@ impl Header {
         u32::try_from(number).map_err(|_| format!("a page has the invalid count {number}"))
     }
 
-    /// How values are encoded. Delta encodings of texts are refused, because the crate takes memory for any number of
+    /// The encoding of values. Delta encodings of texts are refused, because the crate reserves memory for any number of
     /// texts that a page announces.
     fn encoding(&self, field: usize) -> Result<Encoding, String> {
         match self.numbers[field - 1] {
@@ -172,7 +172,7 @@ impl Pages {
         Ok(bytes)
     }
 
-    /// The page whose header has been read.
+    /// Reads the page after its header.
     fn page(&mut self, header: &Header) -> Result<Page, String> {
         let stored = self.bytes(header.stored)?;
         self.place.start += header.stored;
@@ -240,7 +240,7 @@ impl PageReader for Pages {
         let about = |header: &Header| {
             let values = header.count(1)? as usize;
             // Rows are only skipped in columns that do not repeat. There a page has as many rows as values, whatever
-            // its header says.
+            // its header claims.
             let num_rows = (header.kind == 3).then_some(values);
             let num_levels = (header.kind != 2).then_some(values);
             Ok(PageMetadata { num_rows, num_levels, is_dict: header.kind == 2 })
@@ -269,7 +269,7 @@ fn unfolded(codec: CompressionCodec, stored: Vec<u8>, front: usize) -> Result<Ve
         if unfolded.len() - front.len() > most { Err(too_long()) } else { Ok(unfolded) }
     };
     match codec {
-        // Where all values are missing, there are no compressed bytes.
+        // If all values are missing, there are no compressed bytes.
         _ if folded.is_empty() => Ok(front.to_vec()),
         CompressionCodec::SNAPPY => {
             let length = snap::raw::decompress_len(folded).map_err(|error| error.to_string())?;

@@ -1,3 +1,5 @@
+//! Tests on Parquet files of several programs, and on files that are put together here by hand.
+
 use super::*;
 use proptest::prelude::*;
 use std::{cell::RefCell, fs, io::Write};
@@ -89,7 +91,7 @@ fn columns_that_are_not_there_or_other_are_named() {
 }
 
 #[test]
-fn what_is_no_parquet_file_is_refused() {
+fn open_refuses_files_that_are_no_parquet() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("x.parquet");
     let open = |bytes: &[u8]| {
@@ -210,7 +212,7 @@ fn a_page_that_is_to_become_too_large_is_refused() {
 }
 
 #[test]
-fn what_a_page_announces_must_be_there() {
+fn pages_may_not_announce_more_than_they_hold() {
     let entries = page(2, i64::from(i32::MAX), 0, &[0; 40]);
     assert!(with_pages(0, 0, &entries).unwrap_err().contains("a dictionary of 2147483647 entries in 40 bytes"));
     assert!(with_pages(0, 0, &page(0, 2, 8, &[1, 3, 2])).unwrap_err().contains("is broken"));

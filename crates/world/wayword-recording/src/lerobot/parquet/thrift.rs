@@ -1,6 +1,6 @@
-//! Thrift's compact protocol, in which Parquet writes its metadata. Skipped values take no memory.
+//! Reads Thrift's compact protocol, the format of Parquet's metadata. Skipped values take no memory.
 
-/// Kinds of values.
+/// Kinds of values, as numbers of the protocol.
 pub(super) const TRUE: u8 = 1;
 pub(super) const FALSE: u8 = 2;
 pub(super) const I32: u8 = 5;
@@ -50,7 +50,7 @@ impl<'a> Thrift<'a> {
         Err("a number has more than 64 bits".to_owned())
     }
 
-    /// A whole number. Zigzag: the sign is the lowest bit.
+    /// A whole number in zigzag form: its lowest bit is the sign.
     pub(super) fn number(&mut self) -> Result<i64, String> {
         let value = self.varint()?;
         Ok((value >> 1) as i64 ^ -((value & 1) as i64))
@@ -62,7 +62,7 @@ impl<'a> Thrift<'a> {
         self.take(length)
     }
 
-    /// The beginning of a list: how many elements follow, and of which kind. Each takes at least a byte.
+    /// The beginning of a list: the number of its elements, and their kind. Each element takes at least a byte.
     pub(super) fn list(&mut self) -> Result<(u64, u8), String> {
         let header = self.byte()?;
         let count = if header >> 4 == 15 { self.varint()? } else { u64::from(header >> 4) };
