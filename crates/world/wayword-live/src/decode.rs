@@ -6,7 +6,7 @@ use std::io::Cursor;
 /// Longest side of an accepted picture, pixels.
 const MAX_SIDE_PX: u32 = 8192;
 
-/// The RGB pixels of a file, rows from the top, or what is wrong with the file.
+/// The RGB pixels of a file, rows from the top; otherwise the reason why the file cannot be used.
 ///
 /// The caller knows the size. A file of another size is refused before it is decoded, so that its header cannot make
 /// the program allocate more memory than the picture needs.
@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_whole_picture_of_the_announced_size_is_taken() {
+    fn rgb_accepts_only_a_whole_picture_of_the_announced_size() {
         assert_eq!(rgb(&png(2, 1), ImageFormat::Png, (2, 1)), Ok(vec![1, 2, 3, 1, 2, 3]));
         assert!(rgb(&png(1, 1), ImageFormat::Png, (2, 1)).unwrap_err().contains("expected 2 x 1"));
         assert!(rgb(&png(300, 1), ImageFormat::Png, (2, 1)).is_err());

@@ -1,4 +1,4 @@
-//! Which generated houses a stand-in shows, and what its simulator calls them.
+//! Selects the generated houses that a stand-in shows, and pairs them with the simulator's scene names.
 
 use std::{collections::BTreeSet, fmt};
 use thiserror::Error;
@@ -30,7 +30,7 @@ pub enum NotShown {
     },
 }
 
-/// A house, and the scene as which a stand-in shows it: `house2-4=home_0`.
+/// A house, and the name of the scene under which a stand-in shows it: `house2-4=home_0`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShownAs {
     /// Seed of the house.
@@ -53,8 +53,8 @@ impl Houses {
     /// The houses of these seeds.
     ///
     /// # Errors
-    /// When there is none, one is named twice, or one has more than one storey: neither VirtualHome's homes nor
-    /// ThreeDWorld's floor plans have stairs.
+    /// When the list is empty, names a house twice, or contains a house with several storeys: VirtualHome's homes and
+    /// ThreeDWorld's floor plans have no stairs.
     pub fn of(seeds: Vec<u64>) -> Result<Self, NotShown> {
         let mut met = BTreeSet::new();
         if let Some(seed) = seeds.iter().find(|seed| !met.insert(**seed)) {

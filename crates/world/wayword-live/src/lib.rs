@@ -1,8 +1,8 @@
-//! Platforms over simulators that run as separate programs: ThreeDWorld's build and VirtualHome's executable. Wayword
-//! talks to them over their own sockets.
+//! Platforms over simulators that run as separate programs: ThreeDWorld's build ([`tdw`]) and VirtualHome's executable
+//! ([`virtualhome`]). Wayword talks to them over their own sockets. [`Live`] holds the code that both share.
 //!
 //! Bytes that come over a socket are not trusted. Sizes are checked before memory is allocated. Where bytes cannot be
-//! read, the error says what was expected, and where.
+//! read, the error names the expected content and the position.
 
 mod decode;
 #[cfg(feature = "stand-in")]

@@ -1,4 +1,7 @@
-//! The code that all live simulators share: a platform over a running simulator, which answers one request at a time.
+//! The code that all live simulators share: a platform over a running simulator.
+//!
+//! A simulator answers one request at a time, so it is behind a mutex. On first use of a scene the platform surveys it
+//! (objects, floor, rooms) and keeps the survey; later questions about the graph or an object's name need no simulator.
 
 use crate::{
     raster::Raster,
@@ -23,7 +26,7 @@ const AHEAD_M: f64 = 0.5;
 
 /// A simulator that runs as a separate program.
 pub(crate) trait Simulator: Send + fmt::Debug {
-    /// Its errors.
+    /// The errors of this simulator.
     type Error: std::error::Error;
     /// Its name, as `--platform` takes it.
     const NAME: &'static str;
@@ -31,13 +34,13 @@ pub(crate) trait Simulator: Send + fmt::Debug {
     /// Its address, for messages.
     fn address(&self) -> String;
 
-    /// Sets who receives progress lines: what the program waits for, and what the simulator's scenes lack.
+    /// Sets the receiver of progress lines: they report whom the program waits for, and missing parts of scenes.
     fn tell(&mut self, ear: Ear);
 
     /// The scenes that it lists.
     fn scenes(&self) -> Vec<String>;
 
-    /// `None` where the scene's name is valid; otherwise a hint that says how scenes are named.
+    /// `None` where the scene's name is valid; otherwise a hint about how scenes are named.
     fn refuses(&self, scene: &SceneId) -> Option<&'static str>;
 
     /// Connects to the simulator and loads this scene. Cheap where the scene is loaded already.
@@ -46,7 +49,7 @@ pub(crate) trait Simulator: Send + fmt::Debug {
     /// Asks where the objects of the scene are, and where one can walk.
     fn survey(&mut self) -> Result<Survey, Self::Error>;
 
-    /// Takes a picture through a camera whose elevation is 0. Where only the ids are `wanted`, it may leave out the rest.
+    /// Takes a picture through a level camera (elevation 0). Where only the ids are `wanted`, it may leave out the rest.
     fn shoot(&mut self, camera: &Camera, wanted: Wanted) -> Result<Shot, Self::Error>;
 
     /// The corners of the shortest way between two eye positions, both ends included; `None` where there is no way.
@@ -62,7 +65,7 @@ pub(crate) trait Simulator: Send + fmt::Debug {
     fn failure(error: &Self::Error) -> Failure;
 }
 
-/// Receives the progress lines about a simulator. At first they go nowhere: see [`Ear::deaf`].
+/// Receives the progress lines about a simulator. A new platform discards them ([`Ear::deaf`]) until somebody listens.
 #[derive(Clone)]
 pub(crate) struct Ear(Hear);
 
@@ -82,7 +85,7 @@ impl fmt::Debug for Ear {
     }
 }
 
-/// What a scene contains.
+/// The contents of a scene, as far as a platform needs them.
 #[derive(Debug)]
 pub(crate) struct Survey {
     /// Viewpoints at eye height, and between which of them one can walk straight.
@@ -93,19 +96,19 @@ pub(crate) struct Survey {
     pub(crate) palette: Palette,
     /// Rooms, where they have names.
     pub(crate) rooms: Vec<Room>,
-    /// The floor in doorways: who stands there is in the room into which they look.
+    /// The floor in doorways. An eye above it counts as being in the room into which it looks.
     pub(crate) thresholds: Vec<Area>,
 }
 
 /// A rectangle of floor: lower and upper corner.
 pub(crate) type Area = ([f64; 2], [f64; 2]);
 
-/// What is wanted of a picture.
+/// Which data of a picture a caller needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Everything.
+    /// Colours and object ids.
     Picture,
-    /// What is where in it.
+    /// Object ids alone, which are enough for labels and cost less.
     Ids,
 }
 
@@ -119,7 +122,7 @@ pub(crate) struct Room {
 
 /// A picture, and the colour of each pixel's object as [`sight::colour_id`] encodes it.
 pub(crate) struct Shot {
-    /// `None` where it was not wanted.
+    /// `None` if the caller did not ask for colours.
     pub(crate) rgb: Option<Vec<u8>>,
     pub(crate) ids: Vec<u32>,
 }
@@ -223,15 +226,16 @@ impl<S: Simulator> Live<S> {
         Camera::level(eye, gaze, [self.pictures.width_px, self.pictures.height_px])
     }
 
-    /// Sends progress lines to `hear`: what the program waits for, and what the simulator's scenes lack.
+    /// Sends progress lines to `hear`. They report whom the program waits for, and missing parts of
+    /// scenes.
     #[must_use]
     pub fn heard_by(self, hear: Hear) -> Self {
         self.lock().simulator.tell(Ear(hear));
         self
     }
 
-    /// The picture and its ground truth: labels of what is visible, and the room. There is no ground truth where the
-    /// scene has neither objects nor named rooms, because then nothing in it is labelled.
+    /// The picture and its ground truth: labels of the visible objects, and the room. There is no ground truth where the
+    /// scene has neither objects nor named rooms.
     fn seen(
         &self,
         scene: &SceneId,
@@ -274,7 +278,7 @@ impl<S: Simulator> Running<S> {
 }
 
 impl Survey {
-    /// The room in which an eye is. If the eye stands in a doorway, it is the room into which it looks.
+    /// The room in which an eye is. In a doorway it is the room into which the eye looks.
     fn room(&self, eye: DVec3, heading: Heading) -> Option<String> {
         let holds = |area: &Area, at: DVec3| {
             let (low, high) = area;

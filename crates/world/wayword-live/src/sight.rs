@@ -1,10 +1,13 @@
-//! Labels from what the pixels of a picture show.
+//! Makes labels from the pixels of a simulator's segmentation picture.
+//!
+//! In that picture every object has its own colour. The pixels of a colour show whether the object is visible and where;
+//! the object's box, which the simulator sends once per scene, gives its position.
 
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Gaze, Heading, Label, ObjectId};
 use wayword_render::{Camera, Picture, Visible, evident_objects};
 
-/// Names that get no label, because such things are everywhere.
+/// Names that get no label, because these things are everywhere and distinguish no place.
 const SHELL: [&str; 6] = ["floor", "wall", "walls", "ceiling", "character", "door jamb"];
 
 /// An object of a scene.
@@ -40,7 +43,7 @@ pub(crate) fn plain(name: &str) -> String {
     words.split_whitespace().map(str::to_lowercase).collect::<Vec<_>>().join(" ")
 }
 
-/// The scene's objects by their colour, `0xRRGGBB`, which is also the id of a pixel.
+/// The scene's objects by their colour, `0xRRGGBB`. The colour of a pixel is also its id.
 pub(crate) type Palette = BTreeMap<u32, Thing>;
 
 /// The id of a colour.
@@ -81,7 +84,7 @@ fn label(camera: &Camera, seen: &Visible, thing: &Thing) -> Option<Label> {
 mod tests {
     use super::*;
 
-    /// A chair two metres ahead, half a metre wide, whose pixels fill `columns` of the picture's 160.
+    /// The labels of a chair two metres ahead, half a metre wide. Its pixels fill `columns` of the picture's 160 columns.
     fn seen(columns: u32) -> Vec<Label> {
         let camera = Camera {
             position: DVec3::new(0.0, 0.0, 1.0),
@@ -101,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_shows_is_labelled_and_what_only_peeks_out_is_not() {
+    fn labels_contain_visible_objects_and_no_slivers() {
         let label = seen(20).remove(0);
         assert_eq!((label.name.as_str(), label.object.as_str(), label.distance_m), ("arm chair", "7", Some(2.0)));
         assert_eq!(label.box_px, Some([70.0, 50.0, 20.0, 20.0]));
@@ -110,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_and_nonsense_are_no_things() {
+    fn thing_new_refuses_walls_and_invalid_boxes() {
         let side = [DVec3::X; 3];
         assert_eq!(Thing::new(1, "Wall", DVec3::ZERO, side), None);
         assert_eq!(Thing::new(1, "__", DVec3::ZERO, side), None);

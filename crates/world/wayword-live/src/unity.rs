@@ -44,7 +44,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn there_and_back_is_where_one_was(x in -1e3..1e3f64, y in -1e3..1e3f64, z in -1e3..1e3f64) {
+        fn unity_conversion_round_trips(x in -1e3..1e3f64, y in -1e3..1e3f64, z in -1e3..1e3f64) {
             prop_assert_eq!(wayword_from_unity(unity_from_wayword(DVec3::new(x, y, z))), DVec3::new(x, y, z));
         }
 

@@ -1,4 +1,5 @@
-//! Random paths through a live simulator's scene: a way between two places, with frames along it.
+//! Samples random paths through a live simulator's scene: the shortest way between two random viewpoints, with frames at
+//! its corners and at equal distances between them.
 
 use rand::Rng;
 use wayword_core::{
@@ -8,7 +9,7 @@ use wayword_world::wander::{Wander, no_such_walk, wander};
 
 /// Height of the eye above the ground, metres.
 pub(crate) const EYE_M: f64 = 1.5;
-/// A corner nearer than this to the last kept corner, or to the end, gets no frame of its own, metres.
+/// A corner gets no frame if it is nearer than this to the corner before it that has one, or to the end, metres.
 const CROWDED_M: f64 = 0.4;
 /// Largest distance of a target from the last frame, metres.
 const TARGET_REACH_M: f64 = 4.0;
@@ -18,7 +19,7 @@ pub(crate) trait Walkable {
     /// The corners of the shortest way between two eye positions, both ends included; `None` where there is no way.
     fn way(&mut self, from: DVec3, to: DVec3) -> Result<Option<Vec<DVec3>>, PlatformError>;
 
-    /// What is visible from a pose within a gaze.
+    /// Labels of the objects that are visible from a pose within a gaze.
     fn labels(&mut self, pose: Pose, gaze: Gaze) -> Result<Vec<Label>, PlatformError>;
 
     /// Everything visible around a pose.
@@ -28,7 +29,7 @@ pub(crate) trait Walkable {
     }
 }
 
-/// A path between two of `eyes` whose length `request` allows. Frames are at corners and at most `interval_m` apart.
+/// A path between two of `eyes`, of a length that `request` allows. Frames are at corners and at most `interval_m` apart.
 pub(crate) fn path(
     world: &mut dyn Walkable,
     (scene, eyes): (&SceneId, &[DVec3]),
@@ -103,7 +104,7 @@ fn target(labels: &[Label], dice: &mut impl Rng) -> Option<Target> {
     })
 }
 
-/// Refuses a frame whose position is not finite or too far out.
+/// Refuses a frame at a position that is not finite or too far out.
 pub(crate) fn check(scene: &SceneId, frame: &Frame) -> Result<(), PlatformError> {
     let usable = frame.pose.position.is_finite() && frame.pose.position.abs().max_element() < 1e5;
     if usable { Ok(()) } else { Err(PlatformError::nowhere(scene, frame)) }

@@ -1,4 +1,4 @@
-//! Runs a stand-in for a simulator, for demonstrations without one, until it is interrupted.
+//! Runs a stand-in in place of a simulator, for demonstrations without one, until it is interrupted.
 //!
 //! `cargo run --release -p wayword-live --features stand-in -- virtualhome 8080 --houses 1,4` listens on that port like
 //! VirtualHome's executable; `... -- tdw 1071 --first 12` connects to a controller on that port like TDW's build.
@@ -18,7 +18,7 @@ usage: stand_in tdw|virtualhome PORT|ADDRESS:PORT [--houses SEED,SEED... | --fir
 
 Without houses, tdw shows a floor plan without furniture, and each home of virtualhome another house.";
 
-/// What was typed.
+/// The arguments of the command line.
 struct Typed {
     simulator: String,
     address: SocketAddr,
@@ -54,7 +54,7 @@ impl Typed {
         Ok(typed)
     }
 
-    /// Tells which scene shows which house.
+    /// Prints or writes which scene shows which house.
     fn tell(&self, shown: &[ShownAs]) -> Result<(), Box<dyn Error>> {
         let lines: String = shown.iter().map(|each| format!("{each}\n")).collect();
         match &self.names {

@@ -1,4 +1,7 @@
-//! A floor as a grid of cells that are free or not, for where a simulator says no more than that.
+//! A floor as a grid of cells that are free or occupied. It serves simulators that report free floor and no graph.
+//!
+//! From the grid this module makes viewpoints (far from obstacles, well apart), edges (straight free walks), and shortest
+//! ways.
 
 #[cfg(test)]
 mod tests;
@@ -78,7 +81,7 @@ impl Raster {
         Some(row.checked_mul(self.columns)? + column).filter(|cell| *cell < self.free.len())
     }
 
-    /// Whether somebody can stand at a point.
+    /// Whether a point lies in a free cell.
     pub(crate) fn is_free(&self, point: [f64; 2]) -> bool {
         self.cell_at(point).is_some_and(|cell| self.free[cell])
     }
@@ -187,7 +190,7 @@ impl Raster {
         for eye in eyes {
             self.add(&mut graph, &mut nodes, *eye)?;
         }
-        // Each round joins two parts, or finds that no way joins them.
+        // Each round joins two parts, or stops because no way joins them.
         for _ in 0..eyes.len() {
             if graph.components() < 2 || !self.join_parts(&mut graph, &mut nodes)? {
                 break;

@@ -14,7 +14,7 @@ fn two_rooms() -> Raster {
 }
 
 #[test]
-fn a_way_leads_through_the_door_and_no_wall() {
+fn shortest_leads_through_the_door_and_no_wall() {
     let raster = two_rooms();
     let way = raster.shortest([0.0, 0.0], [3.5, 0.0]).unwrap();
     assert_eq!((way[0], way[way.len() - 1]), ([0.0, 0.0], [3.5, 0.0]));
@@ -25,13 +25,13 @@ fn a_way_leads_through_the_door_and_no_wall() {
 }
 
 #[test]
-fn nobody_squeezes_between_two_corners_that_touch() {
+fn shortest_does_not_pass_between_touching_corners() {
     assert_eq!(drawn(&[".#", "#."]).shortest([0.0, 0.5], [0.5, 0.0]), None);
     assert!(drawn(&[".#", ".."]).shortest([0.0, 0.5], [0.5, 0.0]).is_some());
 }
 
 #[test]
-fn pockets_are_no_ground() {
+fn keep_largest_part_removes_pockets() {
     let mut raster = drawn(&["...#.", "...##", "...#."]);
     assert!(raster.is_free([2.0, 0.0]));
     raster.keep_largest_part();
@@ -49,7 +49,7 @@ fn the_graph_is_one_even_where_a_door_is_narrow() {
 }
 
 #[test]
-fn sizes_that_nobody_means_are_refused() {
+fn of_cells_refuses_huge_empty_and_invalid_floors() {
     let far = [([0.0, 0.0], true), ([1e9, 1e9], true)];
     assert_eq!(Raster::of_cells(&far, 0.25), None);
     assert_eq!(Raster::of_cells(&[([f64::NAN, 0.0], true)], 0.25), None);
@@ -58,7 +58,7 @@ fn sizes_that_nobody_means_are_refused() {
 
 proptest! {
     #[test]
-    fn ways_are_open_and_no_shorter_than_a_bird_flies(
+    fn shortest_ways_are_free_and_at_least_straight_line_long(
         cells in prop::collection::vec(prop::bool::weighted(0.7), 144),
         from in 0..144_usize, to in 0..144_usize,
     ) {

@@ -1,4 +1,4 @@
-//! Commands to the build, with the JSON of TDW's `command_api.md`.
+//! Commands to the build, and their JSON as TDW's `command_api.md` documents it.
 
 use serde::Serialize;
 
@@ -21,7 +21,7 @@ pub struct Quaternion {
     pub z: f64,
 }
 
-/// A point of the grid on which walls of procedural rooms stand, one metre apart.
+/// A point of the one-metre grid that walls of procedural rooms follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[allow(missing_docs, reason = "each is the coordinate of that name")]
 pub struct GridPoint {

@@ -1,4 +1,7 @@
 //! The controller's side of the connection: a REP socket that builds connect to. Each list of commands gets one answer.
+//!
+//! The build connects to Wayword, and not the other way round, so the controller listens on a port and waits. The last
+//! frame of every answer is the number of the frame that the build rendered.
 
 use super::{
     commands::Command,
@@ -12,7 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often a build may say that it received nothing, for one list of commands. The Python client
+/// How often a build may report that it did not receive one list of commands. The Python client
 /// (`Controller.communicate`) has the same limit.
 const MAX_RESENDS: u32 = 1000;
 /// How long a new connection may take for its greeting.
@@ -41,8 +44,8 @@ impl Default for ControllerOptions {
 
 /// A controller: at most one build at a time.
 ///
-/// After an error on the wire the controller drops the build, because it is not known any more which side has to send
-/// next. [`Controller::connect`] takes the next build.
+/// After an error on the wire the controller drops the build, because it is then unknown which side has to send next.
+/// [`Controller::connect`] takes the next build.
 #[derive(Debug)]
 pub struct Controller {
     listener: TcpListener,
@@ -85,7 +88,7 @@ impl Response {
         self.frames.iter().map(|frame| Ok(Output::read(frame)?))
     }
 
-    /// Calls `pick` with each frame whose id is `id`, and returns the first result that is not `None`. `asked` names
+    /// Calls `pick` with each frame that has this `id`, and returns the first result that is not `None`. `asked` names
     /// the command that asked for the frame, for the error.
     ///
     /// # Errors
@@ -144,7 +147,7 @@ impl Controller {
     /// Waits for a build, unless one is connected, and asks for its version.
     ///
     /// # Errors
-    /// When no build connects in time, or what connects does not speak as a build does.
+    /// When no build connects in time, or the program that connects does not follow a build's protocol.
     pub fn connect(&mut self) -> Result<&BuildVersion, TdwError> {
         if self.build.is_none() {
             let peer = self.wait()?;
@@ -188,7 +191,7 @@ impl Controller {
         TdwError::NoBuild { address: self.address(), seconds: self.options.connect_timeout.as_secs(), last }
     }
 
-    /// Sends commands and waits for the answer. Sends them again as long as the build says that it received nothing.
+    /// Sends commands and waits for the answer. Sends them again as long as the build answers that it did not receive them.
     ///
     /// # Errors
     /// When no build is connected; when it is gone, is late or quits with an error; or when its answer is not valid.
@@ -240,7 +243,7 @@ impl Controller {
     }
 }
 
-/// The build sends the first message, and its content means nothing.
+/// Greets a build that has connected, and discards its first message, which has no meaningful content.
 fn greet(stream: TcpStream, deadline: Instant) -> Result<Peer, WireError> {
     let deadline = deadline.min(Instant::now() + GREETING);
     let mut peer = Peer::greet(stream, Role::Rep, deadline)?;

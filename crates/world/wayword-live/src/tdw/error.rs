@@ -1,17 +1,17 @@
-//! What can go wrong with a build.
+//! Errors of a ThreeDWorld build.
 
 use super::{output::OutputError, zmtp::WireError};
 use std::{io, net::SocketAddr};
 
-/// Why a build does not give what it was asked for.
+/// The reason why a request to a build failed.
 #[derive(Debug, thiserror::Error)]
 pub enum TdwError {
     /// The port cannot be opened.
     #[error("cannot listen on {address}: {source}; another controller may be running there")]
     Bind {
-        /// Where.
+        /// The address of the port.
         address: SocketAddr,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
     /// No build connected.
@@ -33,7 +33,7 @@ pub enum TdwError {
     Wire {
         /// Where it is.
         address: SocketAddr,
-        /// What happened.
+        /// The error of the connection.
         source: WireError,
     },
     /// A frame that cannot be read.
@@ -47,18 +47,18 @@ pub enum TdwError {
         /// How long that frame is.
         length: usize,
     },
-    /// An answer that lacks what was asked for.
+    /// An answer that lacks a requested frame.
     #[error("the build sent no `{id}`, although the command {asked} asks for it")]
     Missing {
         /// The id of the missing frame.
         id: &'static str,
-        /// What was asked.
+        /// The command that asked for it.
         asked: &'static str,
     },
     /// The build never received the commands.
     #[error("the build asked {times} times for the same commands (`ftre`), so Wayword gave up")]
     NeverHeard {
-        /// How often.
+        /// How often the build asked.
         times: u32,
     },
     /// The build ended by itself.
@@ -69,7 +69,7 @@ pub enum TdwError {
     Picture {
         /// The pass.
         pass: &'static str,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
     /// A scene that the user named cannot be used.

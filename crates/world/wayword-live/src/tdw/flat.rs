@@ -1,16 +1,20 @@
 //! Reads FlatBuffers, as far as TDW's output uses them: tables with vtables, strings, vectors, structs.
 //!
-//! Every offset is checked against the input's length before it is followed. Strings, bytes and tables are borrowed
-//! from the input, so a hostile buffer whose offsets all point at one long string takes no memory for it. Offsets
-//! cannot lead in a circle, because the code that reads a table sets the depth, and not the bytes.
+//! A table starts with an offset back to its vtable, a list of two-byte entries. Entry (slot) `n` is the position of
+//! field `n` in the table, or 0 where the table leaves the field out. Strings, vectors and inner tables are elsewhere in
+//! the buffer; their field is an offset that counts from its own position.
+//!
+//! Every offset is checked against the input's length before it is followed. Strings, bytes and tables are borrowed from
+//! the input: a hostile buffer can point many offsets at one long string, and this takes no memory. Offsets cannot lead
+//! in a circle, because the code that reads a table sets the depth, and not the bytes.
 
-/// Bytes that are not what they should be.
+/// Bytes that do not have the expected form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("byte {at}: expected {expected}")]
 pub struct Misread {
-    /// Where in the frame.
+    /// Position in the frame.
     pub at: usize,
-    /// What should be there.
+    /// The expected content.
     pub expected: &'static str,
 }
 
@@ -87,7 +91,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The error for a field that is not what it should be.
+    /// The error for a field with invalid content.
     pub(super) fn misfit(&self, slot: usize, expected: &'static str) -> Misread {
         let at = self.field(slot, 1, expected).ok().flatten().unwrap_or(self.at);
         Misread { at, expected }
@@ -140,7 +144,7 @@ impl<'a> Table<'a> {
         text_at(self.bytes, followed(self.bytes, at, expected)?)
     }
 
-    /// A vector whose elements take `size` bytes each; empty where the table leaves it out.
+    /// A vector with elements of `size` bytes each; empty where the table leaves it out.
     pub(super) fn vector(&self, slot: usize, size: usize) -> Result<Items<'a>, Misread> {
         let expected = "a vector";
         let Some(at) = self.field(slot, 4, expected)? else {

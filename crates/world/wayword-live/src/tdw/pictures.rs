@@ -1,4 +1,4 @@
-//! Decodes the passes of a picture.
+//! Decodes the passes of a picture: colours (`_img`), object colours (`_id`) and depth (`_depth`).
 
 use super::{error::TdwError, output::Pass};
 use crate::decode;

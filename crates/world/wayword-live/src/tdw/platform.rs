@@ -17,7 +17,7 @@ use wayword_world::said;
 pub struct TdwOptions {
     /// Where to wait for the build.
     pub controller: ControllerOptions,
-    /// Folder of the Python package `tdw`, whose lists of furniture are needed for furnished floor plans.
+    /// Folder of the Python package `tdw`. Furnished floor plans need its lists of furniture.
     pub package: Option<PathBuf>,
     /// Size of pictures, and distance between frames.
     pub pictures: Pictures,
@@ -34,7 +34,7 @@ pub struct Tdw {
     package: Option<PathBuf>,
     size: (u32, u32),
     loaded: Option<SceneId>,
-    /// What the camera was last told to send, where that is known.
+    /// The data that the camera was last set to send, if known.
     sends: Option<Wanted>,
     ear: Ear,
 }
@@ -72,7 +72,8 @@ impl Tdw {
     }
 }
 
-/// What to do about a scene in which nothing has a label. In a floor plan, walls, doors and windows are not objects.
+/// A hint for a scene without labels. In a floor plan, walls, doors and windows are not objects, so an unfurnished plan
+/// has none.
 fn unlabelled(scene: Option<&SceneId>) -> String {
     let scene = scene.map_or("the scene", SceneId::as_str);
     let plan =

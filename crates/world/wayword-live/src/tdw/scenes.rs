@@ -86,8 +86,8 @@ impl Plan {
     }
 }
 
-/// The operating system's name in the scenes' addresses, and in the records of 3D models. It is this machine's, because
-/// the build runs beside Wayword.
+/// The operating system's name in the scenes' addresses, and in the records of 3D models. The build is assumed to run on
+/// this machine.
 fn system() -> (&'static str, &'static str) {
     match std::env::consts::OS {
         "macos" => ("osx", "Darwin"),
@@ -116,9 +116,9 @@ fn room(width: u32, length: u32) -> Vec<Command> {
     commands
 }
 
-/// What the Python package knows of the floor plans' furniture.
+/// The lists of furniture in the Python package `tdw`.
 struct Furniture {
-    /// By structure ("1"), by layout.
+    /// Pieces by structure ("1"), then by layout.
     layouts: BTreeMap<String, BTreeMap<String, Vec<Placed>>>,
     package: PathBuf,
 }
@@ -210,7 +210,7 @@ impl Furniture {
         Ok(commands)
     }
 
-    /// A library's records. Its name comes from a file, so it must not lead out of the folder.
+    /// A library's records. The name comes from a file, so a name that leads out of the folder is refused.
     fn library(&self, name: &str) -> Result<Library, TdwError> {
         if name.contains(['/', '\\']) || name.starts_with('.') {
             return Err(TdwError::Package(format!("the package tdw names a library {name:?}: expected a file name")));
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn every_listed_scene_has_a_plan_and_nothing_else_has() {
+    fn plan_exists_for_every_listed_scene_and_no_other_name() {
         for name in names(None).into_iter().chain(names(Some(Path::new("tdw")))) {
             assert!(plan(&name).is_some(), "{name}");
         }
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn furniture_stands_where_the_package_has_it() {
+    fn commands_place_furniture_at_the_packages_positions() {
         let package = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &str| {
             std::fs::create_dir_all(package.path().join(name).parent().unwrap()).unwrap();

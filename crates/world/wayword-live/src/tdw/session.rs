@@ -1,4 +1,4 @@
-//! The requests to a build that has loaded a scene, step by step.
+//! The sequences of commands for one task each: load a scene, survey it, find a way, take a picture.
 
 use super::{
     commands::{Command, Frequency, Quaternion, Vector3},
@@ -26,7 +26,7 @@ const CELL_M: f64 = 0.25;
 const RAYCAST_M: f64 = 2.5;
 /// How far a place may be from the navmesh, metres.
 const SNAP_M: f64 = 0.5;
-/// Most questions in one list of commands.
+/// Most commands in one list.
 const BATCH: usize = 256;
 
 /// Loads a scene and puts the avatar into it.
@@ -132,8 +132,8 @@ pub(super) fn way(controller: &mut Controller, from: DVec3, to: DVec3) -> Result
     Ok(Some(way).filter(|way| way.len() >= 2 && way.iter().all(|corner| corner.is_finite())))
 }
 
-/// Takes a picture through a camera of the size that the scene was loaded with. `is_told` says that the camera already
-/// sends just what is wanted.
+/// Takes a picture through a camera of the size that the scene was loaded with. If `is_told` is true, the camera is
+/// already set to send exactly the `wanted` passes.
 pub(super) fn shoot(
     controller: &mut Controller,
     camera: &Camera,

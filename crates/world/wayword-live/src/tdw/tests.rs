@@ -43,7 +43,7 @@ fn a_buffer_laid_out_by_another_writer_is_read() {
 }
 
 #[test]
-fn what_cannot_be_read_says_where_and_what_was_expected() {
+fn output_errors_name_position_and_expected_content() {
     let frame = &frames_of_every_kind().iter().find(|(id, _)| id == "path").unwrap().1;
     let error = Output::read(&frame[..frame.len() - 8]).unwrap_err().to_string();
     assert!(error.contains("`path`") && error.contains("byte ") && error.contains("within the frame"), "{error}");

@@ -1,4 +1,4 @@
-//! Requests and answers, bounded in size and time.
+//! A client for VirtualHome's HTTP protocol. The size of answers and the time for them are limited.
 
 use super::{error::HomeError, graph::EnvironmentGraph};
 use crate::decode;
@@ -31,12 +31,12 @@ pub struct Camera {
     pub field_of_view_deg: f64,
 }
 
-/// What a picture shows.
+/// The kind of picture that a camera takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// What an eye sees.
+    /// Colours as an eye sees them.
     Normal,
-    /// Each object in a colour of its own.
+    /// Each object in a different colour.
     Instances,
 }
 
@@ -67,7 +67,7 @@ impl Client {
             .http_status_as_error(false)
             .max_redirects(0)
             .timeout_global(Some(timeout))
-            // The simulator runs beside Wayword, where no proxy reaches it.
+            // The simulator runs on this machine, where no proxy reaches it.
             .proxy(None)
             .build();
         Self { agent: Agent::new_with_config(config), url: url.into(), asked: 0 }
@@ -106,9 +106,9 @@ impl Client {
     /// Loads one of its homes, and removes the characters and cameras that were there before.
     ///
     /// # Errors
-    /// When the simulator is gone or has no such home.
+    /// When the simulator is gone or does not have this home.
     pub fn reset(&mut self, home: u32) -> Result<(), HomeError> {
-        // Like the genuine client, this goes on where there was nothing to clear.
+        // Like the genuine client, this goes on if "clear" fails because no home is loaded.
         match self.post("clear", &[home.into()], &[]) {
             Ok(_) | Err(HomeError::Failed { .. }) => {}
             Err(error) => return Err(error),
@@ -116,7 +116,7 @@ impl Client {
         self.post("environment", &[home.into()], &[]).map(drop)
     }
 
-    /// Everything that is in the home.
+    /// The objects, rooms and walls of the home.
     ///
     /// # Errors
     /// When the simulator is gone, or does not send a graph.
@@ -129,7 +129,7 @@ impl Client {
     /// How many cameras there are.
     ///
     /// # Errors
-    /// When the simulator is gone, or does not say.
+    /// When the simulator is gone, or its answer has no count.
     pub fn camera_count(&mut self) -> Result<i64, HomeError> {
         let action = "camera_count";
         let missing =
@@ -148,12 +148,12 @@ impl Client {
     /// Moves a camera of the scene.
     ///
     /// # Errors
-    /// When the simulator is gone or has no such camera.
+    /// When the simulator is gone or does not have this camera.
     pub fn update_camera(&mut self, index: i64, camera: &Camera) -> Result<(), HomeError> {
         self.post("update_camera", &[index], &[camera.to_json()]).map(drop)
     }
 
-    /// What a camera sees: RGB, rows from the top.
+    /// A camera's picture: RGB, rows from the top.
     ///
     /// # Errors
     /// When the simulator is gone, or sends no picture of this size.

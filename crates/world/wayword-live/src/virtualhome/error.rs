@@ -1,6 +1,6 @@
-//! What can go wrong with VirtualHome.
+//! Errors of VirtualHome's executable.
 
-/// Why VirtualHome does not give what it was asked for.
+/// The reason why a request to VirtualHome failed.
 #[derive(Debug, thiserror::Error)]
 pub enum HomeError {
     /// The simulator does not answer.
@@ -8,37 +8,37 @@ pub enum HomeError {
         "action {action}: {reason}; start VirtualHome with -batchmode -http-port=PORT, where PORT is the port in --at"
     )]
     Unreachable {
-        /// What was asked.
+        /// The requested action.
         action: &'static str,
-        /// What happened.
+        /// The error of the connection.
         reason: String,
     },
     /// An answer with another status than 200.
     #[error("action {action}: the simulator answered with status {status}: {message}")]
     Status {
-        /// What was asked.
+        /// The requested action.
         action: &'static str,
         /// The HTTP status.
         status: u16,
-        /// The beginning of what it said.
+        /// The beginning of its message.
         message: String,
     },
-    /// The simulator says that the action failed.
+    /// The simulator reports that the action failed.
     #[error("action {action}: the simulator says that it failed: {message}")]
     Failed {
-        /// What was asked.
+        /// The requested action.
         action: &'static str,
-        /// The beginning of what it said.
+        /// The beginning of its message.
         message: String,
     },
     /// An answer that cannot be read.
     #[error("action {action}: the answer is not {expected}: {reason}")]
     Malformed {
-        /// What was asked.
+        /// The requested action.
         action: &'static str,
-        /// What it should be.
+        /// The expected content.
         expected: &'static str,
-        /// What is wrong, and where.
+        /// The reason, with the position where it is known.
         reason: String,
     },
     /// A home in which the agent cannot walk.

@@ -1,4 +1,7 @@
-//! Computes where one can walk in a home, from the boxes of its rooms, doors and objects.
+//! Computes the walkable floor of a home from the boxes of its rooms, doors and objects.
+//!
+//! VirtualHome reports no navigation mesh. A cell is free if it lies inside a room, away from the walls, or in the passage
+//! of a door, and no object's box is within the agent's radius.
 
 use super::{error::HomeError, graph::EnvironmentGraph};
 use crate::{live::Area, raster::Raster};
@@ -8,11 +11,11 @@ use wayword_core::DVec3;
 const CELL_M: f64 = 0.1;
 /// Half the width of the agent, metres.
 const RADIUS_M: f64 = 0.2;
-/// How far inside its box a room ends, metres, because walls stand on the box's edge even where the graph lacks them.
+/// How far inside its box a room ends, metres: walls are on the box's edge even where the graph does not list them.
 const WALL_M: f64 = 0.15;
 /// How far a door's passage reaches into the rooms on both sides, metres.
 const REACH_M: f64 = 0.5;
-/// How far from the middle of a wall one still stands in its doorway, metres.
+/// A position within this distance of the middle of a wall counts as in its doorway, metres.
 const THRESHOLD_M: f64 = 0.25;
 /// Heights above the floor between which objects are in the way, metres: the agent steps over lower ones and walks
 /// under higher ones.
@@ -29,7 +32,7 @@ fn grown((low, high): (DVec3, DVec3), by: [f64; 2]) -> Area {
     ([low.x - by[0], low.y - by[1]], [high.x + by[0], high.y + by[1]])
 }
 
-/// The floor's height and its free cells: the rooms and the passages between them, without what stands in the way.
+/// The floor's height and its free cells: the rooms and the passages between them, without the area of obstacles.
 pub(super) fn raster(graph: &EnvironmentGraph) -> Result<(f64, Raster), HomeError> {
     if graph.nodes.len() > MAX_NODES {
         let found = graph.nodes.len();
@@ -107,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn one_walks_from_room_to_room_through_a_door_only() {
+    fn raster_connects_rooms_only_through_a_door() {
         let (from, to) = ([-2.0, 1.0], [2.0, 1.0]);
         let (floor_m, raster) = raster(&two_rooms(vec![door()])).unwrap();
         let way = raster.shortest(from, to).unwrap();
@@ -119,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_the_way_is_gone_around_and_what_hangs_or_lies_is_not() {
+    fn raster_blocks_only_objects_at_walking_height() {
         let clear = |thing: Node| raster(&two_rooms(vec![door(), thing])).unwrap().1.is_free([2.0, 0.0]);
         let small = [0.5, 0.05, 0.5];
         assert!(!clear(node("coffeetable", "Furniture", [2.0, 0.25, 0.0], [0.5, 0.5, 0.5])));
@@ -128,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn graphs_that_no_home_has_are_refused() {
+    fn raster_refuses_graphs_without_rooms_and_huge_ones() {
         let refused = |graph: &EnvironmentGraph| raster(graph).unwrap_err().to_string();
         assert!(refused(&EnvironmentGraph::default()).contains("no room"));
         let wide = node("hall", "Rooms", [0.0, 1.0, 0.0], [500.0, 2.0, 4.0]);

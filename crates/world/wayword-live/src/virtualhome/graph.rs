@@ -4,7 +4,7 @@ use crate::unity::wayword_from_unity;
 use serde::Deserialize;
 use wayword_core::DVec3;
 
-/// Everything in a home. Edges are not kept, because the boxes show what is inside what.
+/// Everything in a home. The graph's edges are not read, because the boxes already show which object is in which room.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct EnvironmentGraph {
     /// Rooms, walls, doors, furniture, things.
@@ -16,9 +16,9 @@ pub struct EnvironmentGraph {
 pub struct Node {
     /// Its number.
     pub id: i64,
-    /// What it is, words run together: `coffeetable`.
+    /// Its class, with the words run together: `coffeetable`.
     pub class_name: String,
-    /// What kind of thing: `Rooms`, `Doors`, `Walls`, `Furniture`.
+    /// Its category, such as `Rooms`, `Doors`, `Walls` or `Furniture`.
     #[serde(default)]
     pub category: String,
     /// Its box, where it has one.

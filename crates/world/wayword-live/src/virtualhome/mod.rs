@@ -1,7 +1,7 @@
 //! VirtualHome: its HTTP protocol, and the platform on top of it.
 //!
-//! Each request is a POST of JSON with an action and its parameters. Each answer is JSON too, often with more JSON as
-//! text in it. Actions and fields are those of the Python client `virtualhome` 2.3.0 (`comm_unity.py`).
+//! Each request is a POST of JSON with an action and its parameters. Each answer is JSON too, often with more JSON inside
+//! it as text. Actions and fields are those of the Python client `virtualhome` 2.3.0 (`comm_unity.py`).
 
 mod client;
 mod error;

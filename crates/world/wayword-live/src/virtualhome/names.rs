@@ -1,4 +1,4 @@
-//! Splits VirtualHome's class names, which run words together.
+//! Splits VirtualHome's class names, which run words together: `coffeetable` becomes "coffee table".
 
 use std::{collections::BTreeMap, sync::LazyLock};
 
@@ -14,8 +14,8 @@ static CLASSES: LazyLock<BTreeMap<&str, &str>> = LazyLock::new(|| {
     lines.flat_map(named).collect()
 });
 
-/// First words of names that are not in the list: names of classes that users add, and the stand-in's. What follows
-/// must be a word as well, of at least three letters.
+/// First words of names that are not in the list: names of classes that users add, and the stand-in's. The rest of the
+/// name must have at least three letters, so that it can be a word.
 const FIRST: [&str; 35] = [
     "bathroom",
     "bath",

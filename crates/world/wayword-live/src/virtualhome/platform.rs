@@ -23,7 +23,7 @@ const HOMES: std::ops::Range<u32> = 0..50;
 /// Options of the platform.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VirtualHomeOptions {
-    /// Where it listens.
+    /// Address at which the simulator listens.
     pub url: String,
     /// How long each of its answers may take.
     pub timeout: Duration,

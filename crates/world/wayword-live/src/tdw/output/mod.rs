@@ -1,5 +1,5 @@
-//! Output data of the build: one frame for each kind of data that a command asked for. Slots and defaults are those of
-//! the classes in `tdw/FBOutput` of the Python client, version 1.13.0.0.
+//! Output data of the build: one frame for each kind of data that a command asked for. A frame is a FlatBuffer with a
+//! four-letter id. Slots and defaults are those of the classes in `tdw/FBOutput` of the Python client, version 1.13.0.0.
 
 mod read;
 
@@ -37,7 +37,7 @@ pub enum Output<'a> {
     Quit(bool),
     /// `vers`: which build it is.
     Version(Version<'a>),
-    /// `ftre`: the build received nothing and asks for the commands again.
+    /// `ftre`: the build did not receive the commands and asks for them again.
     FailedToReceive,
     /// Anything else, by its id.
     Other([u8; 4]),
@@ -76,7 +76,7 @@ pub struct Segment<'a> {
     pub id: i32,
     /// Name of its model.
     pub name: &'a str,
-    /// What it is.
+    /// Category of the object, such as `sofa`.
     pub category: &'a str,
     /// Its colour.
     pub colour: [u8; 3],
@@ -183,7 +183,7 @@ pub struct Sensor<'a> {
 pub struct OnNavMesh {
     /// The id of the request.
     pub id: i32,
-    /// Whether it is.
+    /// Whether the position is on the navmesh.
     pub is_on: bool,
     /// The nearest position on the navmesh.
     pub position: [f32; 3],
@@ -206,6 +206,6 @@ pub struct Version<'a> {
 pub struct OutputError {
     /// The frame's id.
     pub id: String,
-    /// What is wrong with it.
+    /// Position and expected content.
     pub source: Misread,
 }

@@ -1,4 +1,4 @@
-//! Reads output data from bytes.
+//! Reads output data from the bytes of a frame, one function per kind of frame.
 
 use super::{
     super::flat::{Misread, Table},

@@ -1,4 +1,4 @@
-//! The stand-in's answer to each command, in the build's own frames.
+//! The stand-in's answers to commands: frames in the same layout as those of the genuine build.
 
 use super::{
     flat::{Field, buffer},
@@ -15,7 +15,7 @@ const UNITY: &str = "2020.3.24f1";
 /// Smallest cell of an occupancy map, metres.
 const FINEST_CELL_M: f64 = 0.1;
 
-/// The frames that answer a command; none where it asks for nothing, or for data that the stand-in does not have.
+/// The frames that answer a command; none where it asks for no data, or for data that the stand-in does not have.
 pub(super) fn to(state: &BuildState, kind: &str, command: &Value) -> Vec<Vec<u8>> {
     let id = command["id"].as_i64().unwrap_or(0) as i32;
     let avatars = || state.avatars.iter();

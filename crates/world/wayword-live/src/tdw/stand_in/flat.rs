@@ -1,4 +1,4 @@
-//! Writes FlatBuffers that TDW's own client can read.
+//! Writes FlatBuffers that TDW's own client can read. The reader is in the parent module.
 
 /// A field of a table.
 pub(super) enum Field {
@@ -36,7 +36,7 @@ pub(super) fn buffer(id: &[u8; 4], fields: Vec<Field>) -> Vec<u8> {
     bytes
 }
 
-/// Appends a table and what it refers to; returns where the table starts.
+/// Appends a table and the data that it refers to; returns where the table starts.
 fn table(bytes: &mut Vec<u8>, fields: Vec<Field>) -> usize {
     align(bytes);
     let vtable = bytes.len();

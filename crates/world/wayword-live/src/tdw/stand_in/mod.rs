@@ -1,8 +1,9 @@
 //! A program that speaks the TDW build's protocol and draws generated houses, for tests and demonstrations.
 //!
-//! It knows the commands that Wayword and its tests send and ignores all others, as the build ignores what it cannot
-//! do. The name of the scene chooses the house. Rooms, walls and furniture are those of the house, whatever objects the
-//! commands name. Whether there is furniture may depend on whether objects were added ([`Furnished`]).
+//! It carries out the commands that Wayword and its tests send and ignores all others, as the build does with commands
+//! that it cannot carry out. The name of the scene chooses the house. Rooms, walls and furniture are those of the house;
+//! the objects that commands name are not drawn. [`Furnished`] sets whether furniture appears only after a command has
+//! added an object.
 
 mod answers;
 mod flat;
@@ -43,26 +44,26 @@ pub struct StandInOptions {
     /// The houses that it draws: the first as `floorplan_1a`, the next as `floorplan_1b`, and so on through
     /// [`StandIn::scenes`]. All other scenes show the first house.
     pub houses: Houses,
-    /// What stands in them, and what of it has labels.
+    /// Whether the houses are furnished, and which objects have labels.
     pub furnished: Furnished,
     /// How many lists of commands it pretends not to have received (`ftre`).
     pub deaf: u32,
     /// After this many answers the connection breaks, once, and a new build takes over.
     pub breaks_after: Option<u32>,
-    /// After this many answers it sends nothing more.
+    /// After this many answers it stops sending.
     pub hangs_after: Option<u32>,
     /// Frames with which it answers every list of commands, instead of its own answers.
     pub canned: Option<Vec<Vec<u8>>>,
 }
 
-/// What stands in the houses of a stand-in, and what of it has labels.
+/// Whether the houses of a stand-in are furnished, and which objects have labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Furnished {
-    /// Furniture; doors and windows have labels, too, which they do not have in the genuine build.
+    /// Furniture, doors and windows have labels. In the genuine build, doors and windows have none.
     WithFixtures,
-    /// Furniture, which alone has labels: as in the genuine build's floor plans once they are furnished.
+    /// Only furniture has labels, as in the genuine build's furnished floor plans.
     Always,
-    /// The same, but there is no furniture until an object is added.
+    /// As [`Furnished::Always`], but there is no furniture until a command adds an object.
     OnceAdded,
 }
 
@@ -97,7 +98,7 @@ impl StandIn {
         Self { stop, thread: Some(thread) }
     }
 
-    /// The scenes as which it shows houses: the names of unfurnished floor plans.
+    /// Each house with the scene that shows it; the scenes are the unfurnished floor plans.
     ///
     /// # Errors
     /// When there are more houses than floor plans.

@@ -26,7 +26,7 @@ pub(super) fn passes(picture: &Picture, names: &[String], png: bool, is_object: 
     names.iter().filter_map(pass).collect()
 }
 
-/// The colour of an object in the `_id` pass: a different one for each id, and black for 0, which is no object.
+/// The colour of an object in the `_id` pass: a different one for each id. Black (id 0) means no object.
 pub(crate) fn id_colour(id: u32) -> [u8; 3] {
     let [r, g, b, _] = id.wrapping_mul(0x009e_3779).to_le_bytes();
     [r, g, b]

@@ -1,4 +1,4 @@
-//! The stand-in's state: what commands have set so far.
+//! The stand-in's state: the scene, avatars and settings that the commands so far have made.
 
 use super::world::{World, Worlds};
 use crate::unity::{wayword_forward_from_unity_rotation, wayword_from_unity};
@@ -28,7 +28,7 @@ pub(super) enum Pictures {
 #[derive(Debug)]
 pub(super) struct BuildState {
     pub(super) worlds: Worlds,
-    /// What shows now.
+    /// The house as it is drawn now.
     pub(super) world: Arc<World>,
     pub(super) version: &'static str,
     pub(super) avatars: Vec<Avatar>,

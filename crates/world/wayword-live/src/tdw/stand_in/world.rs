@@ -17,11 +17,11 @@ const SNAP_STEP_M: f64 = 0.05;
 pub struct World {
     pub(super) scene: HouseScene,
     ground: Ground,
-    /// Whether doors and windows have numbers of their own, as furniture has.
+    /// Whether doors and windows are objects with a number, as furniture is.
     counts_fixtures: bool,
 }
 
-/// The houses of a stand-in. Only the one that is loaded is kept, because each takes some 15 MB.
+/// The houses of a stand-in. Only the loaded one is in memory, because each takes some 15 MB.
 #[derive(Debug, Clone)]
 pub(super) struct Worlds {
     houses: Houses,
@@ -30,7 +30,7 @@ pub(super) struct Worlds {
     shown: Shown,
 }
 
-/// What a stand-in shows once a scene is loaded, and once an object has been added.
+/// The two states of a scene: after loading, and after the first object was added.
 #[derive(Debug, Clone)]
 struct Shown {
     loaded: Arc<World>,
@@ -53,12 +53,12 @@ impl Worlds {
         }
     }
 
-    /// What shows once the scene is loaded.
+    /// The world after the scene was loaded.
     pub(super) fn loaded(&self) -> Arc<World> {
         self.shown.loaded.clone()
     }
 
-    /// What shows once an object has been added.
+    /// The world after an object was added.
     pub(super) fn furnished(&self) -> Arc<World> {
         self.shown.furnished.clone()
     }
@@ -108,17 +108,17 @@ impl World {
         object.role == Role::Furniture || self.counts_fixtures && object.role == Role::Fixture
     }
 
-    /// What it draws.
+    /// The house with its drawing.
     pub(crate) fn house(&self) -> &HouseScene {
         &self.scene
     }
 
-    /// Everything that has a colour of its own in the `_id` pass, by number.
+    /// The objects that have a colour in the `_id` pass, by number.
     pub(crate) fn objects(&self) -> impl Iterator<Item = (u32, &Object)> {
         self.scene.objects.iter().filter(|(_, object)| self.counts(object)).map(|(id, object)| (*id, object))
     }
 
-    /// Whether a number belongs to something that has a colour of its own.
+    /// Whether a number belongs to an object that has a colour in the `_id` pass.
     pub(crate) fn is_object(&self, id: u32) -> bool {
         self.scene.objects.get(&id).is_some_and(|object| self.counts(object))
     }
@@ -143,7 +143,7 @@ impl World {
         corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)))
     }
 
-    /// Whether a point of the floor is inside, and whether one can stand there.
+    /// Whether a point of the floor is inside the house, and whether it is walkable.
     pub(super) fn standing(&self, x: f64, z: f64) -> (bool, bool) {
         let floor = wayword_from_unity([x, 0.0, z]);
         (self.scene.house.room_at(floor.x, floor.y, 0.0).is_some(), self.ground.is_walkable(floor))

@@ -1,4 +1,7 @@
-//! Frames and messages after the greeting.
+//! Sends and receives messages after the greeting.
+//!
+//! A message is a list of frames. A frame has one byte of flags (1: more frames follow, 2: long length, 4: a command),
+//! its length in 1 or 8 bytes, and its content.
 
 use super::{Peer, WireError};
 use std::io::Write;
@@ -7,7 +10,7 @@ use std::io::Write;
 const MAX_MESSAGE_BYTES: u64 = 256 << 20;
 /// Most frames that one message may have.
 const MAX_FRAMES: usize = 4096;
-/// Most commands between two messages (such as heartbeats) that are skipped.
+/// Most commands (for example heartbeats) that are skipped between two messages.
 const MAX_COMMANDS: usize = 64;
 
 /// The header of a frame.
@@ -21,7 +24,7 @@ impl Peer {
     /// The next message without its envelope: everything after the empty frame that a REQ or REP socket puts first.
     ///
     /// # Errors
-    /// When the connection ends or is late, or its bytes are not what a REQ or REP socket sends.
+    /// When the connection ends or is late, or its bytes do not follow the protocol of REQ and REP sockets.
     pub(crate) fn receive(&mut self) -> Result<Vec<Vec<u8>>, WireError> {
         let mut frames = Vec::new();
         let mut in_envelope = true;

@@ -1,4 +1,5 @@
-//! The greeting of two sockets: signature, revision, and the rest in the older of their two revisions.
+//! The greeting of two sockets: both send a signature and their revision of ZMTP, then continue in the older of the two
+//! revisions.
 
 use super::{Peer, Role, WireError};
 

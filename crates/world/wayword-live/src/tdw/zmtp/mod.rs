@@ -2,7 +2,7 @@
 //! and ZMTP 2.0 (RFC 15) for builds with an older NetMQ.
 //!
 //! The crate `zeromq` 0.7 is not used, for three reasons. It allocates whatever length a frame announces before a byte
-//! of the frame has come, so nine bytes from an unknown peer end the program. It refuses peers older than 3.0. It needs
+//! of the frame has come, so nine bytes from an unknown peer can exhaust the memory. It refuses peers older than 3.0. It needs
 //! an async runtime. Tests check this module against it and against libzmq.
 
 mod frames;
@@ -30,31 +30,31 @@ pub enum WireError {
     /// The other side closed the connection.
     #[error("the other side closed the connection while {doing}")]
     Gone {
-        /// What was under way.
+        /// The step that was under way.
         doing: &'static str,
     },
-    /// Nothing came, or could be sent, in time.
+    /// No byte came, or could be sent, in time.
     #[error("timed out while {doing}")]
     Late {
-        /// What was under way.
+        /// The step that was under way.
         doing: &'static str,
     },
     /// The system failed.
     #[error("{source} while {doing}")]
     Io {
-        /// What was under way.
+        /// The step that was under way.
         doing: &'static str,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
     /// Bytes that are not ZeroMQ, or more of them than are accepted.
     #[error("byte {at} of the connection: expected {expected}, found {found}")]
     Malformed {
-        /// Where, counted from the first byte that came.
+        /// Position, counted from the first received byte.
         at: u64,
-        /// What should have been there.
+        /// The expected content.
         expected: &'static str,
-        /// What was there.
+        /// The actual content.
         found: String,
     },
 }
@@ -80,7 +80,7 @@ pub(crate) struct Peer {
     taken: u64,
 }
 
-/// A stream whose reads end at a deadline, however slowly the bytes come.
+/// A stream that reads until a deadline, however slowly the bytes come. A plain read timeout starts anew with each byte.
 #[derive(Debug)]
 struct Timed {
     stream: TcpStream,
@@ -125,7 +125,7 @@ impl Peer {
         self.reader.get_mut().deadline = deadline;
     }
 
-    /// Whether something has come, or the connection has ended, within a while.
+    /// Whether bytes arrive, or the connection ends, within this time.
     #[cfg(feature = "stand-in")]
     pub(crate) fn has_news(&self, within: Duration) -> bool {
         let stream = &self.reader.get_ref().stream;

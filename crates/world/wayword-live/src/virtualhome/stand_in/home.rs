@@ -1,4 +1,4 @@
-//! A generated house as VirtualHome describes it.
+//! Presents a generated house as VirtualHome does: as an environment graph, colours of instances, and pictures.
 
 use crate::{
     tdw::stand_in::{World, id_colour, png},
@@ -58,7 +58,7 @@ impl Home {
         for (id, object) in self.world.objects() {
             let opening = house.openings.iter().find(|opening| opening.id == id);
             let (class, category) = match (opening, object.role) {
-                // VirtualHome has both: a jamb where one walks through, and a door where a leaf hangs in it.
+                // VirtualHome has both: a jamb for an open passage, and a door for one with a leaf.
                 (Some(opening), _) if opening.is_passable() => {
                     (if opening.word() == "door" { "door" } else { "doorjamb" }, "Doors")
                 }
@@ -77,7 +77,7 @@ impl Home {
         Value::Object(self.world.objects().map(|(id, _)| (id.to_string(), colour(id))).collect::<Map<_, _>>())
     }
 
-    /// What a camera sees, as a PNG in base64; `None` for modes that the stand-in does not have.
+    /// A camera's picture, as a PNG in base64; `None` for modes that the stand-in does not have.
     pub(super) fn picture(&self, camera: &Value, wanted: &Value) -> Option<String> {
         let number = |value: &Value| value.as_f64();
         let vector = |value: &Value| Some([number(&value["x"])?, number(&value["y"])?, number(&value["z"])?]);
@@ -108,7 +108,7 @@ mod tests {
     use wayword_house::generate;
 
     #[test]
-    fn names_of_a_houses_things_come_apart_as_they_were_joined() {
+    fn words_splits_the_joined_names_of_a_generated_house() {
         for house in (0..30).map(generate) {
             let things = house.furniture.iter().map(|piece| piece.name.to_string());
             let rooms = house.rooms.iter().map(|room| room.kind.word().to_owned());

@@ -1,4 +1,4 @@
-//! The part of HTTP/1.1 that one request on one connection needs.
+//! A minimal HTTP/1.1 server: one request with a JSON body on one connection.
 
 use serde_json::Value;
 use std::{

@@ -47,7 +47,7 @@ impl StandIn {
         Self::serve(address, Filmed { houses: Some(houses), ..Filmed::default() })
     }
 
-    /// The scenes as which it shows houses.
+    /// Each house with the home that shows it.
     ///
     /// # Errors
     /// When there are more houses than VirtualHome has homes.
@@ -103,7 +103,7 @@ struct Filmed {
 }
 
 impl Filmed {
-    /// The seed of a home's house; `None` where there is no such home.
+    /// The seed of a home's house; `None` where this home does not exist.
     fn seed_of(&self, number: u64) -> Option<u64> {
         match &self.houses {
             Some(houses) => houses.seeds().get(usize::try_from(number).ok()?).copied(),
@@ -129,7 +129,7 @@ impl Filmed {
         let int = |n: usize| request["intParams"][n].as_u64();
         let text = || serde_json::from_str::<Value>(request["stringParams"][0].as_str()?).ok();
         match request["action"].as_str()? {
-            // With no home in it there is nothing to clear.
+            // Like the genuine executable, fails where no home is loaded.
             "clear" => drop(self.home.as_ref()?),
             "idle" | "add_character" => {}
             "environment" => {

@@ -102,7 +102,7 @@ fn libzmq_agrees_about_the_bytes() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/pretend_build.py");
     let port = controller.address().port().to_string();
     let build = std::thread::spawn(move || Command::new(python).arg(script).arg(port).output().unwrap());
-    // Its first answer says that it received nothing, its second has a megabyte, its third follows a long list.
+    // Its first answer is `ftre` (not received), its second has a megabyte, its third follows a long list.
     assert_eq!(controller.connect().unwrap().tdw, "1.13.0.0");
     let many = vec![TdwCommand::SendSceneRegions { frequency: Frequency::Once }; 10_000];
     assert_eq!(controller.communicate(&many).unwrap().frame_number, 2);

@@ -1,4 +1,4 @@
-//! Tests the platform with the stand-in build: graph, paths, views, labels, and all of them when the build is lost.
+//! Tests the ThreeDWorld platform with the stand-in build: graph, paths, views, labels, and recovery from a lost build.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -76,7 +76,7 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
 
 /// Through the whole chain, a view has the pixels that our renderer draws, and labels of the objects that they show.
 #[test]
-fn a_view_is_the_houses_own_and_its_labels_are_what_the_pixels_show() {
+fn look_returns_the_houses_pixels_and_labels_of_visible_objects() {
     let (platform, _build) = start(StandInOptions::default());
     let graph = platform.graph(&scene()).unwrap();
     let drawn = HouseScene::new((1..).map(generate).find(|house| house.storeys == 1).unwrap()).unwrap();
@@ -154,7 +154,7 @@ fn several_houses_are_floor_plans_of_their_own() {
 }
 
 #[test]
-fn a_lost_build_costs_a_path_nothing() {
+fn sample_path_is_the_same_when_the_build_is_lost_once() {
     let request = PathRequest { length_m: 4.0..=16.0, ..PathRequest::default() };
     let (steady, _build) = start(StandInOptions::default());
     let (shaky, _other) = start(StandInOptions { breaks_after: Some(5), ..StandInOptions::default() });
@@ -163,7 +163,7 @@ fn a_lost_build_costs_a_path_nothing() {
 }
 
 #[test]
-fn a_scene_that_nobody_knows_is_refused_without_a_build() {
+fn graph_refuses_an_unknown_scene_without_a_build() {
     let controller = ControllerOptions {
         address: SocketAddr::from(([127, 0, 0, 1], 0)),
         connect_timeout: Duration::from_millis(50),
@@ -178,7 +178,7 @@ fn a_scene_that_nobody_knows_is_refused_without_a_build() {
 }
 
 #[test]
-fn a_furnished_plan_without_the_package_says_what_to_give() {
+fn graph_of_a_furnished_plan_without_the_package_names_the_flag() {
     let (platform, _build) = start(StandInOptions::default());
     let error = platform.graph(&SceneId::new("floorplan_1a_0").unwrap()).unwrap_err().to_string();
     assert!(error.contains(": the furniture of floorplan_1a_0 is not available; give --data the folder of"), "{error}");
@@ -211,7 +211,7 @@ fn truths(platform: &TdwPlatform, scene: &str) -> Vec<Option<wayword_core::Groun
 }
 
 #[test]
-fn a_plan_without_furniture_has_no_labels_and_says_how_it_is_furnished() {
+fn unfurnished_plan_has_no_labels_and_a_hint_about_furniture() {
     let folder = tempfile::tempdir().unwrap();
     package(folder.path());
     let honest = StandInOptions { furnished: Furnished::OnceAdded, ..StandInOptions::default() };

@@ -31,7 +31,7 @@ fn once() -> Command {
 }
 
 #[test]
-fn a_build_says_which_it_is_and_answers_until_it_is_told_to_end() {
+fn build_reports_its_version_and_answers_until_terminated() {
     for version in ["1.12.27", "1.13.0.0"] {
         let mut controller = Controller::bind(options()).unwrap();
         let build = StandIn::start(controller.address(), StandInOptions { version, ..StandInOptions::default() });
@@ -53,7 +53,7 @@ fn a_build_says_which_it_is_and_answers_until_it_is_told_to_end() {
 }
 
 #[test]
-fn what_the_build_did_not_hear_is_told_again() {
+fn communicate_resends_commands_that_the_build_did_not_receive() {
     let mut controller = Controller::bind(options()).unwrap();
     let _build = StandIn::start(controller.address(), StandInOptions { deaf: 7, ..canned() });
     controller.connect().unwrap();
@@ -61,7 +61,7 @@ fn what_the_build_did_not_hear_is_told_again() {
 }
 
 #[test]
-fn a_build_that_never_hears_is_given_up() {
+fn communicate_gives_up_a_build_that_never_receives() {
     let mut controller = Controller::bind(options()).unwrap();
     let _build = StandIn::start(controller.address(), StandInOptions { deaf: u32::MAX, ..canned() });
     assert!(matches!(controller.connect(), Err(TdwError::NeverHeard { times: 1000 })));
@@ -83,7 +83,7 @@ fn a_lost_build_is_replaced_by_the_next() {
 }
 
 #[test]
-fn a_build_that_says_nothing_more_is_let_go_in_time() {
+fn communicate_times_out_on_a_silent_build() {
     let options = ControllerOptions { step_timeout: Duration::from_millis(300), ..options() };
     let mut controller = Controller::bind(options).unwrap();
     let _build = StandIn::start(controller.address(), StandInOptions { hangs_after: Some(1), ..canned() });
@@ -93,7 +93,7 @@ fn a_build_that_says_nothing_more_is_let_go_in_time() {
 }
 
 #[test]
-fn where_no_build_comes_the_error_says_how_to_start_one() {
+fn connect_error_without_a_build_shows_how_to_start_one() {
     let options = ControllerOptions { connect_timeout: Duration::from_millis(50), ..options() };
     let mut controller = Controller::bind(options).unwrap();
     let error = controller.connect().unwrap_err().to_string();
@@ -121,7 +121,7 @@ fn connected_by(bytes: &[u8]) -> TdwError {
     let stranger = thread::spawn(move || {
         let mut stream = TcpStream::connect(address).unwrap();
         stream.write_all(&sent).unwrap();
-        // Until the controller hangs up.
+        // Reads until the controller hangs up.
         let _ = stream.set_read_timeout(Some(Duration::from_secs(3)));
         let _ = stream.read_to_end(&mut Vec::new());
     });
@@ -132,7 +132,7 @@ fn connected_by(bytes: &[u8]) -> TdwError {
 }
 
 #[test]
-fn strangers_are_told_apart_by_what_was_expected_and_where() {
+fn connect_errors_about_strangers_name_position_and_expectation() {
     let http = connected_by(b"GET / HTTP/1.1\r\n\r\n").to_string();
     assert!(http.contains("byte 0 of the connection: expected the signature of a ZeroMQ socket"), "{http}");
     let mut publisher = greeting();
@@ -143,7 +143,7 @@ fn strangers_are_told_apart_by_what_was_expected_and_where() {
 }
 
 #[test]
-fn no_length_that_is_only_announced_costs_memory() {
+fn receive_allocates_no_memory_for_announced_lengths() {
     for length in [u64::MAX, 1 << 40, (256 << 20) + 1] {
         let announced = [&greeting()[..], b"\x01\x00\x02", &length.to_be_bytes()].concat();
         let error = connected_by(&announced).to_string();
@@ -180,7 +180,7 @@ fn a_build_with_an_older_zeromq_is_understood() {
     build.join().unwrap();
 }
 
-/// A third-party implementation plays the build: each side reads what the other writes.
+/// A third-party implementation plays the build: each side can read the other's bytes.
 #[test]
 fn the_zeromq_crate_agrees_about_the_bytes() {
     let mut controller = Controller::bind(options()).unwrap();

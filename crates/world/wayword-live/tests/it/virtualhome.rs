@@ -1,4 +1,4 @@
-//! Tests the platform with the stand-in executable: graph, paths, views, labels, rooms; and broken answers.
+//! Tests the VirtualHome platform with the stand-in executable: graph, paths, views, labels, rooms, and broken answers.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -65,7 +65,7 @@ fn paths_keep_to_their_length_and_end_at_their_target_and_repeat() {
 }
 
 #[test]
-fn a_view_is_the_houses_own_with_the_names_of_things_and_room() {
+fn look_returns_the_houses_pixels_with_names_and_room() {
     let (platform, _simulator) = start();
     let graph = platform.graph(&scene()).unwrap();
     let (drawn, mut labels) = (house(), 0);
@@ -99,7 +99,7 @@ fn a_view_is_the_houses_own_with_the_names_of_things_and_room() {
     assert!(labels > 5, "{labels}");
 }
 
-/// Who stands in a doorway is in the room into which they look, as in the built-in platform.
+/// In a doorway, the room is the one into which the eye looks, as in the built-in platform.
 #[test]
 fn rooms_are_those_of_the_built_in_platform_in_doorways_too() {
     let (platform, _simulator) = start();
@@ -127,7 +127,7 @@ fn rooms_are_those_of_the_built_in_platform_in_doorways_too() {
     assert!(told > 4 * doorways.len(), "{told}");
 }
 
-/// Home `n` is the house that was named in place `n`.
+/// Home `n` is house `n` of the list.
 #[test]
 fn several_houses_are_homes_of_their_own() {
     let houses = Houses::with_one_storey(5, 3);
@@ -135,7 +135,7 @@ fn several_houses_are_homes_of_their_own() {
     let options = VirtualHomeOptions { url: simulator.url(), timeout: Duration::from_secs(20), ..Default::default() };
     let platform = VirtualHomePlatform::new(options);
     let shown = StandIn::scenes(&houses).unwrap();
-    // There and back: what was surveyed before is shown again.
+    // Forwards and backwards: on the way back every home was surveyed before.
     for shown in shown.iter().chain(shown.iter().rev()) {
         let scene = SceneId::new(shown.scene.clone()).unwrap();
         let house = generate(shown.seed);
@@ -180,7 +180,7 @@ fn scenes_are_homes_and_a_simulator_that_is_not_there_is_named() {
 
 /// The stand-in fails to clear where no home is loaded, as the genuine executable may. The genuine client goes on then.
 #[test]
-fn a_clear_that_fails_is_no_fault() {
+fn reset_goes_on_when_clear_fails() {
     let simulator = StandIn::start(([127, 0, 0, 1], 0).into()).unwrap();
     let mut client = Client::new(simulator.url(), Duration::from_secs(20));
     client.reset(0).unwrap();
@@ -188,7 +188,7 @@ fn a_clear_that_fails_is_no_fault() {
 }
 
 #[test]
-fn who_waits_is_told_for_what_and_how_it_is_started() {
+fn progress_lines_name_the_simulator_and_how_to_start_it() {
     let (platform, simulator) = start();
     let heard = std::sync::Arc::new(std::sync::Mutex::new(Vec::new()));
     let hearing = heard.clone();
@@ -215,7 +215,7 @@ fn answered(status: &'static str, announced: usize, content: &'static str) -> St
 }
 
 #[test]
-fn what_cannot_be_read_says_where_and_what_was_expected() {
+fn unreadable_answers_name_position_and_expected_content() {
     let cases = [
         ("200 OK", "{]", "the answer is not JSON with `success`: "),
         ("200 OK", r#"{"success":true,"message":"nodes?"}"#, "the answer is not a graph of nodes with boxes: "),
