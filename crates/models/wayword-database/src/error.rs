@@ -1,17 +1,17 @@
-//! Errors of a database.
+//! Errors of a database, and which of them are temporary.
 
 use postgres::error::SqlState;
 use std::path::PathBuf;
 
-/// A database cannot be used. No text holds a password.
+/// A database cannot be used. No message contains a password.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum DatabaseError {
-    /// The name says no database.
+    /// The text is not the name of a database.
     #[error("this names no database: {problem}\nhint: {hint}")]
     Name {
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
-        /// What to write instead.
+        /// How to write a name.
         hint: &'static str,
     },
     /// A file that the connection needs cannot be used.
@@ -19,9 +19,9 @@ pub enum DatabaseError {
     File {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
-        /// What to do.
+        /// How the user can fix it.
         hint: &'static str,
     },
     /// The server is too old.
@@ -32,7 +32,7 @@ pub enum DatabaseError {
         /// The server's version.
         version: String,
     },
-    /// The database cannot hold every text.
+    /// The encoding of the database cannot store every text.
     #[error(
         "{database}: the encoding of this database is {encoding}, which cannot hold every text\nhint: make one with `createdb --encoding=UTF8 --template=template0 NAME`, and name that"
     )]
@@ -49,7 +49,7 @@ pub enum DatabaseError {
     Newer {
         /// The database.
         database: String,
-        /// Whose tables.
+        /// The schema of the tables.
         schema: &'static str,
         /// Their version.
         version: i32,
@@ -61,9 +61,9 @@ pub enum DatabaseError {
     Rights {
         /// The database.
         database: String,
-        /// Whose tables.
+        /// The schema of the tables.
         schema: &'static str,
-        /// What the server said.
+        /// The server's message.
         reason: String,
     },
     /// The server does not answer, or refuses.
@@ -71,19 +71,19 @@ pub enum DatabaseError {
     Server {
         /// The database.
         database: String,
-        /// What was tried.
+        /// The operation.
         doing: &'static str,
-        /// What the server or the system said.
+        /// The message of the server or the system.
         reason: String,
-        /// What to do.
+        /// How the user can fix it.
         hint: &'static str,
-        /// Whether the server or the way to it failed, so that the same may work later.
+        /// Whether the server or the connection failed, so that the same may work later.
         is_lost: bool,
     },
 }
 
 impl DatabaseError {
-    /// Whether the server or the way to it failed, so that the same may work later.
+    /// Whether the server or the connection failed, so that the same may work later.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         matches!(self, Self::Server { is_lost: true, .. })
@@ -97,8 +97,8 @@ impl DatabaseError {
     }
 }
 
-/// Whether an error is of the server or the way to it, not of the statement. Conflicts with other programs count too: the
-/// same statement works when it is sent again.
+/// Whether the server or the connection failed, and not the statement. Conflicts with other programs count too: the same
+/// statement works when it is sent again.
 pub(crate) fn is_lost(error: &postgres::Error) -> bool {
     let Some(code) = error.code() else {
         // An error without a code comes from the connection, unless a value could not be converted.

@@ -1,11 +1,11 @@
 //! Connections to PostgreSQL (15 or later), blocking.
 //!
-//! A database is named without a password ([`Database::named`]); the password comes from a password file or from an
-//! environment variable that the user names. A [`Pool`] goes on when the server was restarted. [`prepare`] brings the
-//! tables of a crate to its version.
+//! The name of a database contains no password ([`Database::named`]); the password comes from a password file or from an
+//! environment variable that the user names. A [`Pool`] survives a restart of the server. [`prepare`] brings the tables of
+//! a crate to its version.
 //!
 //! Statements may be sent twice: a connection can be lost after the server has carried one out. So callers write
-//! statements that do nothing the second time.
+//! idempotent statements: the second time, they change no row.
 
 mod error;
 mod name;

@@ -1,4 +1,4 @@
-//! How a database is named, and the way to it.
+//! Parses the name of a database, adds the settings that it leaves out, and connects.
 
 use crate::{DatabaseError, error::is_lost, password, tls};
 use postgres::{
@@ -15,26 +15,26 @@ pub struct Database {
     password_env: Option<String>,
 }
 
-/// Where a server on this machine listens.
+/// Folders of the socket of a server on this machine.
 const SOCKET_FOLDERS: [&str; 2] = ["/var/run/postgresql", "/tmp"];
 const PORT: u16 = 5432;
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// What every connection asks of the server: a statement or a transaction that hangs does not hold up the other workers.
+/// Options of every connection: a statement or a transaction that hangs is ended, so that it does not block other workers.
 const OPTIONS: &str = "-c statement_timeout=60s -c idle_in_transaction_session_timeout=60s -c lock_timeout=60s";
 
 const HOW: &str = "write the name of a database, or postgresql://USER@HOST:PORT/DATABASE";
 const NO_PASSWORD: &str = "leave the password out: put it into a file (PGPASSFILE, by default ~/.pgpass), or into an environment variable that you name with --password-env";
 
 impl Database {
-    /// A database by its name: `wayword_db`, `postgresql://user@host:5432/wayword_db` or `host=... dbname=...`. What the
-    /// text leaves out comes from PGHOST, PGPORT, PGUSER and PGSSLMODE, as with PostgreSQL's own programs.
+    /// A database by its name: `wayword_db`, `postgresql://user@host:5432/wayword_db` or `host=... dbname=...`. Parts that
+    /// the text leaves out come from PGHOST, PGPORT, PGUSER and PGSSLMODE, as with PostgreSQL's own programs.
     ///
     /// The certificate of a server on another machine is always checked (PGSSLROOTCERT names its authority), unless
     /// `sslmode=disable` is asked for. On this machine there is no TLS unless it is asked for.
     ///
     /// # Errors
-    /// When the text names no database, or holds a password.
+    /// When the text names no database, or contains a password.
     pub fn named(text: &str, password_env: Option<&str>) -> Result<Self, DatabaseError> {
         let wrong = |problem: &str, hint| Err(DatabaseError::Name { problem: problem.to_owned(), hint });
         if text.trim().is_empty() {
@@ -47,7 +47,7 @@ impl Database {
                 .fold(text.to_owned(), |text, mode| text.replace(&format!("sslmode={mode}"), "sslmode=require"));
             match Config::from_str(&text) {
                 Ok(config) => config,
-                // The parser quotes what it cannot read, and that may be a password.
+                // The parser's message quotes the part that it cannot read, which may be a password.
                 Err(_) => return wrong("it cannot be read", HOW),
             }
         } else {
@@ -87,7 +87,7 @@ impl Database {
         };
         connected.map_err(|error| {
             let told = DatabaseError::server(&self.shown, "connect", &error);
-            // Nothing was asked yet, so an error without a code is of the way to the server.
+            // No statement was sent yet, so an error without a code comes from the connection.
             match told {
                 DatabaseError::Server { database, doing, reason, hint, .. } => DatabaseError::Server {
                     database,
@@ -114,7 +114,7 @@ impl fmt::Debug for Database {
     }
 }
 
-/// Fills in what the text leaves out.
+/// Adds the settings that the text leaves out.
 fn complete(config: &mut Config, text: &str) -> Result<(), DatabaseError> {
     let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
     if config.get_hosts().is_empty() && config.get_hostaddrs().is_empty() {

@@ -1,4 +1,4 @@
-//! Where a password comes from: an environment variable that the user names, or a password file.
+//! Finds the password of a connection in an environment variable that the user names, or in a password file.
 //! See <https://www.postgresql.org/docs/15/libpq-pgpass.html>.
 
 use crate::DatabaseError;
@@ -13,7 +13,7 @@ use std::{
 /// Largest password file, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// The password of a connection; `None` if none is kept for it.
+/// The password of a connection; `None` if no source has one for it.
 pub(crate) fn find(config: &Config, variable: Option<&str>) -> Result<Option<String>, DatabaseError> {
     if let Some(name) = variable {
         let value = env::var(name).ok().filter(|value| !value.is_empty());
@@ -44,15 +44,15 @@ fn in_file(config: &Config, path: &Path) -> Result<Option<String>, DatabaseError
     Ok(text.lines().find_map(|line| password_of(line, &wanted(config))))
 }
 
-/// Whether others than the user may read or write a file of this mode and owner. Kubernetes gives a secret's file to root and lets
-/// the group of the pod read it; there the group is the worker alone.
+/// Whether other users may read or write a file of this mode and owner. A file of root may be readable for its group, because
+/// Kubernetes mounts secrets this way: root owns the file, and the worker is the only member of the group.
 #[cfg(unix)]
 fn is_open(mode: u32, owner: u32) -> bool {
     let not_allowed = if owner == 0 { 0o037 } else { 0o077 };
     mode & not_allowed != 0
 }
 
-/// Host, port, database and user, as a password file names them.
+/// Host, port, database and user of the connection, in the order of a line of the password file.
 fn wanted(config: &Config) -> [String; 4] {
     let host = match config.get_hosts().first() {
         Some(Host::Tcp(name)) => name.clone(),

@@ -1,4 +1,4 @@
-//! A few connections that many threads share, and that are made again when the server was restarted.
+//! A pool of a few connections that many threads share. Lost connections are replaced after a restart of the server.
 
 use crate::{Database, DatabaseError, error::is_lost};
 use postgres::{Client, Row, Statement, types::ToSql};
@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long work goes on to be tried while the server cannot be reached.
+/// How long work is tried again while the server cannot be reached.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// First and longest pause between two tries. Each is twice the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
@@ -26,7 +26,7 @@ impl Connection {
     /// Carries out a statement and returns its rows. It is prepared once for each connection.
     ///
     /// # Errors
-    /// What the server says.
+    /// The error of the server.
     pub fn rows(&mut self, sql: &'static str, values: &[&(dyn ToSql + Sync)]) -> Result<Vec<Row>, postgres::Error> {
         let statement = self.prepared(sql)?;
         self.client.query(&statement, values)
@@ -35,7 +35,7 @@ impl Connection {
     /// A statement, prepared once for each connection.
     ///
     /// # Errors
-    /// What the server says.
+    /// The error of the server.
     pub fn prepared(&mut self, sql: &'static str) -> Result<Statement, postgres::Error> {
         if let Some(statement) = self.prepared.get(sql) {
             return Ok(statement.clone());
@@ -45,7 +45,7 @@ impl Connection {
         Ok(statement)
     }
 
-    /// The connection itself, for transactions and for statements that are put together.
+    /// The connection itself, for transactions and for statements that are built at run time.
     pub fn client(&mut self) -> &mut Client {
         &mut self.client
     }
@@ -78,11 +78,11 @@ impl Pool {
         &self.database
     }
 
-    /// Works with a connection. While the server cannot be reached, the work is tried again for two minutes, each time
-    /// with a new connection, so it has to do nothing where it was done already.
+    /// Does work with a connection. While the server cannot be reached, the work is tried again for two minutes, each time
+    /// with a new connection. So the work must be idempotent: an earlier try may have succeeded before its answer was lost.
     ///
     /// # Errors
-    /// What the server says, or that it could not be reached.
+    /// The error of the server, or that it could not be reached.
     pub fn with<T>(
         &self,
         doing: &'static str,
@@ -109,12 +109,12 @@ impl Pool {
         work: &mut impl FnMut(&mut Connection) -> Result<T, postgres::Error>,
     ) -> Result<T, DatabaseError> {
         let mut connection = self.take()?;
-        // If the work panics, the place of this connection is not free again; the program ends then.
+        // If the work panics, the place of this connection stays taken; the program ends in that case.
         let done = work(&mut connection);
         let mut state = self.state();
         state.out -= 1;
         if connection.client.is_closed() || done.as_ref().is_err_and(is_lost) {
-            // The connections that lie idle were lost too.
+            // The idle connections were lost too.
             state.idle.clear();
         } else {
             state.idle.push(connection);

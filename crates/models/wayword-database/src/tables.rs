@@ -1,23 +1,24 @@
-//! The tables of a crate, and their version.
+//! Makes the tables of a crate in its schema, and brings older ones to the newest version.
 
 use crate::{Connection, DatabaseError, Pool};
 use postgres::error::SqlState;
 
-/// The tables of a crate, in a schema of their own.
+/// The tables of a crate, in one schema.
 #[derive(Debug, Clone, Copy)]
 pub struct Tables {
-    /// The schema, which holds a table `version` too.
+    /// The schema, which contains a table `version` too.
     pub schema: &'static str,
-    /// The statements that make version 1, that make version 2 of version 1, and so on. A published one never changes.
+    /// The statements of each version: the first make version 1, the next change version 1 to 2, and so on. Published
+    /// statements never change.
     pub steps: &'static [&'static str],
-    /// What a worker's role needs besides, with `ROLE` in place of its name.
+    /// Grants that a worker's role needs, with `ROLE` in place of its name.
     pub grants: &'static str,
 }
 
 /// The oldest server, as `server_version_num` counts.
 const OLDEST: i32 = 150_000;
 
-/// A number that stands for "someone makes Wayword's tables", among the advisory locks of the database ("Wayw").
+/// The number of the advisory lock ("Wayw" in ASCII) that a program holds while it makes Wayword's tables.
 const LOCK: i64 = 0x5761_7977;
 
 impl Tables {
@@ -50,7 +51,8 @@ fn steps_len(steps: &[&str]) -> i32 {
     i32::try_from(steps.len()).unwrap_or(i32::MAX)
 }
 
-/// Makes the tables, or brings them to the newest version. A role that may not do so works with tables that are made.
+/// Makes the tables, or brings them to the newest version. A role without the right to do so can use tables that exist
+/// already.
 ///
 /// # Errors
 /// When the server is too old, the tables are newer than this program, or they have to be made and the role may not.
@@ -77,7 +79,7 @@ pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
     if found > newest {
         return Err(DatabaseError::Newer { database, schema: tables.schema, version: found });
     }
-    // An error of rights is told apart from the others, so the server's own words are kept beside the result.
+    // An error of missing rights gets a better hint, so its message is stored apart from the result.
     let mut refused = None;
     let made = pool.with("make the tables", |connection| {
         let made = make(connection, tables);
@@ -96,7 +98,8 @@ pub fn prepare(pool: &Pool, tables: &Tables) -> Result<(), DatabaseError> {
 
 /// The version of the tables; 0 if there are none.
 fn version(connection: &mut Connection, tables: &Tables) -> Result<i32, postgres::Error> {
-    // A name that is looked up by itself may be answered from what this connection remembers: that there are no tables.
+    // Queries the catalog as a table. A lookup of the name (`to_regclass`) could be answered from this connection's cache,
+    // which may still know that the table does not exist.
     let sql = "SELECT EXISTS (SELECT FROM pg_catalog.pg_tables WHERE schemaname = $1 AND tablename = 'version')";
     let is_there = connection.client().query_one(sql, &[&tables.schema])?;
     if !is_there.try_get::<_, bool>(0)? {
@@ -106,7 +109,7 @@ fn version(connection: &mut Connection, tables: &Tables) -> Result<i32, postgres
     connection.client().query_one(&sql, &[])?.try_get(0)
 }
 
-/// Makes what is missing, in one transaction. Other programs wait for it.
+/// Makes the missing tables in one transaction. Other programs wait for it.
 fn make(connection: &mut Connection, tables: &Tables) -> Result<(), postgres::Error> {
     let client = connection.client();
     client.batch_execute("BEGIN")?;
