@@ -33,7 +33,7 @@ fn main() {
     }
 }
 
-/// A worker: makes every call whose number belongs to it, and says when each leaves.
+/// A worker: makes its part of the calls, and prints when each leaves.
 fn work(url: &str, calls: usize, rate: f64, worker: usize, workers: usize) {
     let ledger = Ledger::postgres(&Database::named(url, None).unwrap()).unwrap();
     let run = ledger.run("run", Limits { max_usd: Some(USD * calls as f64), max_calls: None }).unwrap();

@@ -1,9 +1,12 @@
-//! The limits of a run, and what it has spent.
+//! The limits of a run on money and requests, and what it has spent against them.
+//!
+//! Before a request is sent, the most that it may cost is reserved. When it ends, the reservation is replaced by the real cost. So a limit
+//! holds at every moment, with any number of requests in flight.
 
 use crate::LedgerError;
 use std::sync::{Mutex, PoisonError};
 
-/// Limits of a run as a whole: earlier processes of the run count.
+/// Limits of a run as a whole, including its earlier processes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Limits {
     /// Most US dollars.
@@ -23,9 +26,9 @@ pub enum Refused {
         "--max-usd {max_usd} could be exceeded: ${spent_usd:.4} are spent or reserved, and the next request may cost ${next_usd:.4}"
     )]
     MaxUsd {
-        /// The limit.
+        /// The limit, US dollars.
         max_usd: f64,
-        /// The sum of what is spent, reserved for requests in flight, and reserved for lost requests.
+        /// The money that is spent, plus the reservations for requests in flight and for lost requests.
         spent_usd: f64,
         /// The request's upper bound.
         next_usd: f64,
@@ -51,7 +54,7 @@ impl Refused {
         matches!(self, Self::Ledger(error) if error.is_lost())
     }
 
-    /// The reason, and what to do.
+    /// Splits the message into the reason and a hint at what to do.
     #[must_use]
     pub fn told(&self) -> (String, String) {
         let hint = match self {
@@ -103,7 +106,7 @@ pub(crate) fn fits(limits: Limits, spent: Spent, most_usd: Option<f64>) -> Resul
     let Some(max_usd) = limits.max_usd else { return Ok(()) };
     let Some(next_usd) = most_usd else { return Err(Refused::NoPrice) };
     let spent_usd = spent.usd + spent.reserved_usd;
-    // A limit that is no number lets nothing out.
+    // If the limit is not a number, the comparison is false, and every request is refused.
     let fits = spent_usd + next_usd <= max_usd + ROUNDING_USD;
     if fits { Ok(()) } else { Err(Refused::MaxUsd { max_usd, spent_usd, next_usd }) }
 }
@@ -142,7 +145,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The limits are kept at every moment, whatever the requests cost and however they end.
+        /// The limits hold at every moment, for any costs and any ends of the requests.
         #[test]
         fn the_bounds_hold(
             max_usd in 0.0..1.0f64,

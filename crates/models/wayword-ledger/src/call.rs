@@ -1,4 +1,6 @@
-//! Calls, their keys and their answers.
+//! Calls of models, their keys and their answers.
+//!
+//! A key is a hash over everything that could change the answer. So equal calls have equal keys, and an answer is found again by its key.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -19,7 +21,7 @@ pub struct Call {
     pub replicate: u32,
 }
 
-/// The name of a call: the SHA-256 of its canonical JSON, in hexadecimal digits.
+/// The key of a call: the SHA-256 of its canonical JSON, in hexadecimal digits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Key(String);
@@ -48,7 +50,7 @@ pub struct Answer {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Row {
-    /// The call's name.
+    /// The call's key.
     pub key: Key,
     /// The call.
     pub call: Call,
@@ -61,7 +63,7 @@ pub struct Row {
 }
 
 impl Call {
-    /// The call's name. Equal calls have equal names, whatever the order of the request's fields.
+    /// The call's key. Equal calls have equal keys, for any order of the request's fields.
     #[must_use]
     pub fn key(&self) -> Key {
         let mut canonical = String::new();
@@ -131,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_order_of_fields_does_not_matter_and_everything_else_does() {
+    fn key_ignores_the_order_of_fields_and_depends_on_all_else() {
         let one = call(json!({"a": [1, {"x": null, "y": "é\n"}], "b": {}, "c": []}));
         assert_eq!(one.key(), call(json!({"c": [], "b": {}, "a": [1, {"y": "é\n", "x": null}]})).key());
         assert_eq!(one.key().as_str().len(), 64);

@@ -1,5 +1,5 @@
-//! The right to make a call, among all programs that have the ledger open. [`crate::flight`] does this for threads of
-//! one program.
+//! Lets one of all programs that have the ledger open make a call, while the others wait for its answer. [`crate::flight`] does this
+//! for threads of one program.
 
 use crate::{
     Key, LedgerError,
@@ -10,12 +10,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Shortest and longest pause between two checks whether another program is done. Each pause is twice the one before.
+/// Shortest and longest pause between two checks whether another program is done. Each pause is twice as long as the one before.
 const FIRST_PAUSE: Duration = Duration::from_millis(10);
 const LAST_PAUSE: Duration = Duration::from_millis(250);
 
-/// How long to wait for a program that has claimed a call, and neither sends another request for it nor releases it,
-/// because it is suspended or hangs. No request has a longer timeout than this.
+/// How long to wait for a program that has claimed a call and neither sends another request for it nor releases it, because it is
+/// suspended or hangs. The timeouts of all requests are shorter.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(3600);
 
 /// The right to make a call. Other programs wait until it is dropped or the call is answered.
@@ -36,8 +36,8 @@ pub(crate) enum Taken<'a> {
 }
 
 impl<'a> Claim<'a> {
-    /// Takes the right to make a call. If another program has it, waits until that program is done, has ended, or has
-    /// sent nothing for as long as `patience`.
+    /// Takes the right to make a call. If another program has it, waits until that program is done, has ended, or has sent no request for
+    /// as long as `patience`.
     ///
     /// # Errors
     /// When the ledger cannot be used.
@@ -80,7 +80,7 @@ impl Drop for Claim<'_> {
 enum Waited {
     /// The program has released the claim, with an answer or without.
     Released,
-    /// The program of this name has ended, or has sent nothing for too long.
+    /// The program of this name has ended, or has sent no request for too long.
     Abandoned(String),
     Stopped,
 }
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_neither_sends_nor_lets_go_is_not_waited_for_for_ever() {
+    fn take_claim_gives_up_waiting_for_a_program_that_hangs() {
         let folder = tempfile::tempdir().unwrap();
         let [first, second] = [(), ()].map(|()| Sqlite::open(&folder.path().join("l.db")).unwrap());
         let key = key();

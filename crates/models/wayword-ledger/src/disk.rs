@@ -30,7 +30,7 @@ const NETWORKS: [(u32, &str); 20] = [
     (0x7c7c_6673, "prl_fs"),
 ];
 
-/// The number of all FUSE file systems, which a program serves. The type of the mount says which one it is.
+/// The number of all FUSE file systems. They are served by programs, and the type of the mount distinguishes them.
 const FUSE: u32 = 0x6573_5546;
 
 /// Mount types of FUSE network file systems, without `fuse.`. Any other type counts as local, as encrypted folders and
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_program_serves_is_known_by_its_mount() {
+    fn fuse_file_systems_are_known_by_their_mounts() {
         assert_eq!(network(FUSE, Some("fuse.sshfs")), Some("sshfs"));
         for local in [Some("fuse.gocryptfs"), Some("fuseblk"), Some("virtiofs"), None] {
             assert_eq!(network(FUSE, local), None, "{local:?}");

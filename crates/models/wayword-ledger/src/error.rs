@@ -41,7 +41,7 @@ pub enum LedgerError {
     Store {
         /// The file or the database.
         place: Place,
-        /// What was tried.
+        /// The operation that failed.
         doing: &'static str,
         /// The database's message.
         reason: String,
@@ -65,7 +65,7 @@ pub enum LedgerError {
     /// The database on a server cannot be used.
     #[error("{reason}")]
     Database {
-        /// Which database, what was tried, and what to do.
+        /// The database, the operation that failed, and what to do.
         reason: String,
         /// Whether the server or the way to it failed.
         is_lost: bool,
@@ -85,7 +85,7 @@ pub enum LedgerError {
         path: PathBuf,
         /// Its line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The problem of the line.
         reason: String,
     },
     /// The program uses the ledger in a way in which it cannot be used.
@@ -93,7 +93,7 @@ pub enum LedgerError {
     Misuse {
         /// The file or the database.
         place: Place,
-        /// What is wrong.
+        /// The wrong use.
         reason: &'static str,
     },
     /// A line of a recording cannot be read.
@@ -103,7 +103,7 @@ pub enum LedgerError {
         path: PathBuf,
         /// Its line, from 1.
         line: usize,
-        /// What is wrong with it.
+        /// The problem of the line.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Keeps two threads from making the same call at the same time.
+//! Keeps two threads of this program from making the same call at the same time: the first one makes it, and the others wait.
 
 use crate::Key;
 use std::{
@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Condvar, Mutex, PoisonError},
 };
 
-/// The calls that are being made.
+/// The calls that threads are making at the moment.
 #[derive(Debug, Default)]
 pub(crate) struct Flights {
     open: Mutex<BTreeMap<Key, Arc<Landed>>>,
@@ -25,7 +25,7 @@ pub(crate) struct Flight<'a> {
 }
 
 impl Flights {
-    /// The right to make a call, or `None` after waiting for another thread that made it.
+    /// Takes the right to make a call. If another thread has it, waits for that thread and returns `None`.
     pub(crate) fn take_off(&self, key: &Key) -> Option<Flight<'_>> {
         let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(other) = open.get(key).map(Arc::clone) else {
@@ -38,7 +38,7 @@ impl Flights {
         None
     }
 
-    /// Does something while no call is made and none can begin; `None` if one is being made.
+    /// Runs `act` while no call is in flight, and keeps new ones from beginning meanwhile. Returns `None` if a call is in flight.
     pub(crate) fn while_none<T>(&self, act: impl FnOnce() -> T) -> Option<T> {
         let open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
         open.is_empty().then(act)

@@ -1,4 +1,4 @@
-//! A ledger: a file, or one in memory, or one that answers from a recording alone.
+//! The type [`Ledger`], and the ways to open one: a file, memory, a recording, recordings of chunks, or a database.
 
 #[cfg(feature = "postgres")]
 use crate::store::{Postgres, Pulse};
@@ -24,7 +24,7 @@ pub struct Ledger {
 struct Inner {
     store: Box<dyn Store>,
     flights: Flights,
-    /// In a replay: the recording that all answers have to come from.
+    /// In a replay: the recording from which all answers have to come.
     recording: Option<PathBuf>,
 }
 
@@ -37,7 +37,7 @@ impl Ledger {
         Ok(Self::of(Sqlite::open(path)?, None))
     }
 
-    /// Checks whether a ledger may be kept at a path. Opens and makes nothing.
+    /// Checks whether a ledger may be kept at a path. It neither opens nor creates a file.
     ///
     /// # Errors
     /// When the path is on a network file system.
@@ -53,7 +53,7 @@ impl Ledger {
         Ok(Self::of(Sqlite::in_memory()?, None))
     }
 
-    /// A ledger that takes all answers from a recording.
+    /// A ledger in memory that takes all answers from a recording. A call that the recording does not have is an error.
     ///
     /// # Errors
     /// When the recording cannot be read.
@@ -64,12 +64,12 @@ impl Ledger {
         Ok(Self::of(store, Some(recording.to_owned())))
     }
 
-    /// A ledger of one shard of a run, whose chunks are worked on one after the other. Each has one file, to which
-    /// requests and answers are appended: it may be on a network file system. The limits of a run hold over all chunks
-    /// together. `earlier` are the files of the other chunks: what was spent there counts, and their answers are not
-    /// read. A file that does not exist is empty.
+    /// A ledger of one shard of a run. The chunks of the shard are made one after the other, and each has one file, to which requests
+    /// and answers are appended; it may be on a network file system. The limits of a run hold over all chunks together. `earlier` are
+    /// the files of the other chunks: their spending counts, and their answers are not used. A file that does not exist counts as
+    /// empty.
     ///
-    /// Call [`Ledger::turn_to`] before the first call. The caller sees to it that one program at a time writes a file.
+    /// Call [`Ledger::turn_to`] before the first call. The caller has to make sure that only one program at a time writes a file.
     ///
     /// # Errors
     /// When a file cannot be read, or was changed.
@@ -77,8 +77,8 @@ impl Ledger {
         Ok(Self::of(Chunks::open(earlier)?, None))
     }
 
-    /// Goes on with the file of another chunk, or makes it. The answers of the chunk before are no longer found. The end
-    /// of a line that a crash has torn is cut off: its request had not been sent, or its answer not been used.
+    /// Goes on with the file of another chunk, or makes it. The answers of the previous chunk are no longer found. An incomplete last
+    /// line, which a crash can leave, is cut off: its request had not been sent, or its answer had not been used.
     ///
     /// Only for a ledger of [`Ledger::in_chunks`], between the calls of one chunk and those of the next.
     ///
@@ -92,8 +92,8 @@ impl Ledger {
         })
     }
 
-    /// What was spent in the file of a chunk. Changes nothing, so another program may be writing it. A file that does
-    /// not exist is empty.
+    /// Sums up the spending in the file of a chunk. It only reads, so another program may be writing the file. A file that does not
+    /// exist counts as empty.
     ///
     /// # Errors
     /// When the file cannot be read, or was changed.
@@ -112,8 +112,8 @@ impl Ledger {
         Self::postgres_with_lease(database, Pulse::LEASE)
     }
 
-    /// The same, where the calls of a program that gives no sign of life for as long as `lease` are free for others. All
-    /// programs have to give the same time; [`Ledger::postgres`] has a minute.
+    /// The same with another lease: a program without a sign of life for that long counts as ended, and others may make its calls. All
+    /// programs have to use the same lease; [`Ledger::postgres`] uses one minute.
     ///
     /// # Errors
     /// As [`Ledger::postgres`].

@@ -1,4 +1,5 @@
-//! On what occasion calls are made. It belongs to a thread, and is handed to other threads explicitly.
+//! The context in which a thread makes calls: the tracing span of its work, and the purpose of the calls. It belongs to a thread and has
+//! to be passed to other threads explicitly.
 
 use std::cell::Cell;
 use tracing::{Dispatch, Span, dispatcher, subscriber::NoSubscriber};
@@ -7,15 +8,15 @@ thread_local! {
     static PURPOSE: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
-/// On what occasion something is done: the span that it is a part of, who watches, and what calls are for.
+/// The context of some work: the span that it is a part of, the subscriber that gets the spans, and the purpose of the calls.
 #[derive(Debug, Clone)]
 pub struct Occasion {
-    /// `None` if nobody watches.
+    /// `None` if there is no subscriber.
     watched: Option<(Dispatch, Span)>,
     purpose: Option<&'static str>,
 }
 
-/// Puts the purpose back, also after a panic.
+/// Restores the previous purpose of the thread when it is dropped, also after a panic.
 struct Before(Option<&'static str>);
 
 impl Drop for Before {
@@ -25,14 +26,14 @@ impl Drop for Before {
 }
 
 impl Occasion {
-    /// The occasion of this thread, for work that goes on in another one.
+    /// The context of this thread, for work that goes on in another one.
     #[must_use]
     pub fn here() -> Self {
         let dispatch = dispatcher::get_default(|to| (!to.is::<NoSubscriber>()).then(|| to.clone()));
         Self { watched: dispatch.map(|to| (to, Span::current())), purpose: Self::purpose() }
     }
 
-    /// Does something on this occasion.
+    /// Runs a function in this context.
     pub fn on<T>(&self, does: impl FnOnce() -> T) -> T {
         let _before = Before(PURPOSE.replace(self.purpose));
         match &self.watched {
@@ -41,13 +42,13 @@ impl Occasion {
         }
     }
 
-    /// Does something whose calls are for this purpose.
+    /// Runs a function with a purpose for its calls.
     pub fn with_purpose<T>(purpose: &'static str, does: impl FnOnce() -> T) -> T {
         let _before = Before(PURPOSE.replace(Some(purpose)));
         does()
     }
 
-    /// What calls of this thread are for, if that is known.
+    /// The purpose of this thread's calls, if it was set.
     pub(crate) fn purpose() -> Option<&'static str> {
         PURPOSE.get()
     }

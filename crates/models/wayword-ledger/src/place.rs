@@ -1,11 +1,11 @@
-//! Where a ledger is, as messages name it.
+//! The location of a ledger, as messages name it.
 
 use std::{
     fmt,
     path::{Path, PathBuf},
 };
 
-/// Where a ledger is. Its text names a file or a database, and never a password.
+/// The location of a ledger. Its text names a file or a database, and never contains a password.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     /// A file.
@@ -19,7 +19,7 @@ impl Place {
         Self::File(path.to_owned())
     }
 
-    /// How to drop the answers that were changed.
+    /// The command that drops the changed answers.
     pub(crate) fn prune_changed(&self) -> String {
         match self {
             Self::File(path) => format!("`wayword ledger prune --changed --ledger {}`", path.display()),

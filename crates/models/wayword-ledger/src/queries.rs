@@ -11,7 +11,7 @@ pub struct Filter {
     pub model: Option<String>,
     /// Only calls that this run has used.
     pub run: Option<String>,
-    /// Only calls whose answer is older than this, seconds.
+    /// Only calls with an answer older than this, seconds.
     pub older_than_s: Option<u64>,
     /// At most this many, the latest ones. [`Ledger::list`] alone uses this.
     pub limit: Option<usize>,
@@ -31,7 +31,7 @@ pub enum By {
 /// The cost of a model, a run or a day.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CostLine {
-    /// The model, the run or the day.
+    /// Name of the model or the run, or the day.
     pub of: String,
     /// Calls that were answered.
     pub calls: u64,
@@ -39,13 +39,13 @@ pub struct CostLine {
     pub tokens_in: u64,
     /// Tokens of answers.
     pub tokens_out: u64,
-    /// US dollars, of the calls whose price was known.
+    /// US dollars, for the calls with a known price.
     pub usd: f64,
-    /// Calls whose price was not known.
+    /// Calls without a known price.
     pub without_price: u64,
 }
 
-/// What a run has spent in all its processes.
+/// The requests and the spending of a run in all its processes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Spending {
     /// Requests that were sent.
@@ -144,7 +144,7 @@ impl Ledger {
         self.store().prune_changed()
     }
 
-    /// What calls have cost, by model, run or day.
+    /// Sums up the costs of calls by model, run or day.
     ///
     /// # Errors
     /// When the ledger cannot be read.
@@ -152,7 +152,7 @@ impl Ledger {
         self.store().costs(by)
     }
 
-    /// What a run has spent in all its processes, on all machines that share the ledger.
+    /// The requests and the spending of a run in all its processes, on all machines that share the ledger.
     ///
     /// # Errors
     /// When the ledger cannot be read.
@@ -160,7 +160,7 @@ impl Ledger {
         self.store().spending(run)
     }
 
-    /// How many requests were sent without a known answer. They may have been paid for.
+    /// Counts the requests that were sent and have no known answer. They may have been paid for.
     ///
     /// # Errors
     /// When the ledger cannot be read.

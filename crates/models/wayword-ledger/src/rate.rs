@@ -1,4 +1,4 @@
-//! Rates that all programs with the ledger open keep together.
+//! Rates of requests and tokens that all programs with the ledger open keep together.
 
 use crate::{LedgerError, Run};
 use std::{
@@ -6,13 +6,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How often a thread that waits looks whether it was stopped.
+/// How often a waiting thread checks whether it was stopped.
 const LOOK_UP: Duration = Duration::from_millis(100);
 
-/// How many turns in a row may be missed. Then the way to the database takes too long for a common rate.
+/// How many turns in a row may be missed. If a request misses more, the database is too slow for a common rate.
 const MOST_MISSED: usize = 100;
 
-/// Rates of a provider that a user sets.
+/// The rates for a provider that the user has set.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Rates {
     /// Requests per second.
@@ -31,8 +31,8 @@ impl Run {
     /// Waits until a request of about so many tokens may be sent to a provider, if the ledger keeps rates for all
     /// programs together; otherwise returns at once. Returns false if `stopped` became true first.
     ///
-    /// Requests leave in the order in which they asked. In any second at most the rate and a tenth of it leave, and at
-    /// least one more than the rate. A request that comes too late for its turn gives it up and takes another.
+    /// Requests leave in the order in which they asked. In any second, at most a tenth more than the rate leave, or one more where a
+    /// tenth is less than one. A request that comes too late for its turn gives it up and takes another.
     ///
     /// # Errors
     /// When the ledger cannot be used, or answers too slowly.
@@ -60,7 +60,7 @@ impl Run {
     }
 }
 
-/// Waits for a moment; false if `stopped` became true first.
+/// Waits until the moment `from`; returns false if `stopped` became true first.
 fn wait(from: Instant, stopped: impl Fn() -> bool) -> bool {
     loop {
         match from.saturating_duration_since(Instant::now()) {

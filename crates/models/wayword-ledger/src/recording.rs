@@ -1,4 +1,4 @@
-//! Reads a recording: the lines of an export, or of a chunk's file.
+//! Reads a recording of calls for a replay: the lines of an export, or of a chunk's file.
 
 use crate::{LedgerError, Row, store::Entry};
 use std::{
@@ -10,7 +10,7 @@ use std::{
 /// Longest line of a recording that is read, bytes.
 pub(crate) const MOST_LINE_BYTES: u64 = 16 << 20;
 
-/// Passes every call of a recording to `take`. A run, an export or a worker wrote these lines.
+/// Passes every call of a recording to `take`. The lines may come from a run, an export or a worker.
 pub(crate) fn read(path: &Path, take: impl Fn(Row)) -> Result<(), LedgerError> {
     let failed = LedgerError::io(path, "read the recording");
     let mut reader = BufReader::new(File::open(path).map_err(&failed)?);

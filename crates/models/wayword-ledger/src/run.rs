@@ -1,4 +1,4 @@
-//! A run's use of the ledger: each call is made once.
+//! A run's use of the ledger. [`Run::once`] answers a call from the ledger, or makes it, at most once over all threads and programs.
 
 use crate::{
     Answer, Call, Key, LedgerError, Limits, Refused, Row, Stopper,
@@ -31,7 +31,7 @@ struct RunState {
     totals: Mutex<Totals>,
 }
 
-/// What a run did and spent in this process.
+/// The requests and the spending of a run in this process.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Totals {
     /// Requests that were sent.
@@ -54,7 +54,8 @@ pub struct Totals {
     pub maybe_usd: f64,
 }
 
-/// The requests of one call.
+/// The attempts to get an answer to one call. Each attempt is a request, which has to be announced with [`Attempts::begin`] before it
+/// is sent.
 pub struct Attempts<'a> {
     run: &'a Run,
     key: &'a Key,
@@ -63,11 +64,11 @@ pub struct Attempts<'a> {
     open: Option<Sent>,
     /// How many requests were sent.
     sent: u32,
-    /// Of what kind the failure of the call is, if it fails.
+    /// The kind of failure that the span reports if the call fails.
     failure: &'static str,
 }
 
-/// A request that was written down.
+/// A request that the store has written down.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sent {
     /// Its number in the store.
@@ -85,7 +86,7 @@ pub enum OnceError<E> {
     /// The call may not be made.
     #[error(transparent)]
     Refused(Refused),
-    /// The call is not in the recording that all answers have to come from.
+    /// The call is not in the recording from which all answers have to come.
     #[error("{}: this file of recorded calls has no call to {model} with these words: {words:?}\nhint: record the calls again with --record, with the same settings", recording.display())]
     NotRecorded {
         /// The recording.
@@ -101,7 +102,7 @@ pub enum OnceError<E> {
 }
 
 impl Ledger {
-    /// A run by its name. What earlier processes spent under that name counts towards the limits.
+    /// Starts or continues a run by its name. The spending of its earlier processes counts towards the limits.
     ///
     /// # Errors
     /// When the ledger cannot be read.
@@ -215,7 +216,7 @@ impl Run {
         &self.ledger
     }
 
-    /// What the run did and spent in this process.
+    /// The requests and the spending of the run in this process.
     #[must_use]
     pub fn totals(&self) -> Totals {
         *self.state.totals.lock().unwrap_or_else(PoisonError::into_inner)
@@ -272,7 +273,7 @@ impl Attempts<'_> {
         self.run.ledger.store().sent(&request)
     }
 
-    /// The request was not sent after all.
+    /// Reports that the request was not sent after all.
     pub fn cancelled(&mut self) {
         let Some(sent) = self.open.take() else { return };
         self.sent = self.sent.saturating_sub(1);
@@ -281,7 +282,7 @@ impl Attempts<'_> {
         self.run.ledger.store().ended(&sent, End::Cancelled, "");
     }
 
-    /// The request brought no answer. If it may have been paid for, its upper bound counts as spent.
+    /// Reports that the request brought no answer. If it may have been paid for, its upper bound counts as spent.
     pub fn failed(&mut self, reason: &str, maybe_paid: bool) {
         let Some(sent) = self.open.take() else { return };
         let lost_usd = if maybe_paid { sent.most_usd.unwrap_or(0.0) } else { 0.0 };
@@ -294,13 +295,12 @@ impl Attempts<'_> {
         self.run.ledger.store().ended(&sent, if maybe_paid { End::Lost } else { End::Failed }, reason);
     }
 
-    /// If the call fails, its failure is of this kind, for whoever watches the run: one word, without anything that a
-    /// service said.
+    /// Sets the kind of failure that the call's span reports if the call fails: one word, without any text from a service.
     pub fn fails_as(&mut self, kind: &'static str) {
         self.failure = kind;
     }
 
-    /// The call has failed.
+    /// Records in the span that the call has failed.
     fn unanswered(&self) {
         self.span.sent(self.sent);
         self.span.failed(self.failure);

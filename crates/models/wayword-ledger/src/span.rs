@@ -1,9 +1,9 @@
-//! The span of a call, for whoever watches a run. It has none of the call's words, and none of its answer's.
+//! The tracing span of a call, for monitoring a run. For privacy it contains no words of the call or its answer.
 
 use crate::{Answer, Call, Occasion};
 use tracing::{Span, field::Empty, info_span};
 
-/// The target of the program's spans, by which they are told from those of other crates.
+/// The tracing target of the program's spans, which distinguishes them from those of other crates.
 pub const TARGET: &str = "wayword";
 
 /// The span of a call, from the first look into the ledger to the answer.
@@ -31,7 +31,7 @@ impl CallSpan {
         Self(span)
     }
 
-    /// The ledger has the answer. What it cost was told when it was made, so that sums over spans are what was spent.
+    /// The ledger already has the answer. Its cost is not recorded again, so that sums over spans equal the real spending.
     pub(crate) fn found(&self) {
         self.0.record("from_ledger", true);
     }

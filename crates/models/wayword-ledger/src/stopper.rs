@@ -1,4 +1,4 @@
-//! A handle that stops a run from outside.
+//! A handle that stops a run from outside, as from a signal handler.
 
 use std::sync::{
     Arc,

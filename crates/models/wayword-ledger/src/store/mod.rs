@@ -1,6 +1,6 @@
-//! Where calls are kept.
+//! The stores of a ledger: the trait that all of them implement, and the types that they share.
 //!
-//! Architecture invariant: what a store says it has written survives the end of the program, and a loss of power too.
+//! Architecture invariant: everything that a store reports as written survives the end of the program, and a loss of power too.
 
 mod chunks;
 #[cfg(feature = "postgres")]
@@ -21,9 +21,9 @@ pub use postgres::TABLES;
 pub(crate) use postgres::{Postgres, Pulse};
 pub(crate) use sqlite::{Sqlite, may_hold};
 
-/// Keeps calls and requests, and keeps to limits. Every function may be called by many threads at once.
+/// Stores calls and requests, and enforces limits. Every function may be called by many threads at once.
 pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
-    /// Where it is, for messages.
+    /// The location of the store, for messages.
     fn place(&self) -> Place;
 
     /// Goes on with the file of another chunk.
@@ -34,11 +34,11 @@ pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
     /// The answer of a call, if it has one. Notes that the run has used it.
     fn answer(&self, key: &Key, run: &str) -> Result<Option<Answer>, LedgerError>;
 
-    /// Asks for the right to make a call, and takes it from the program `from`, which is no longer waited for. A store
-    /// of one program alone always gives it.
+    /// Asks for the right to make a call. If the program `from` has it, takes it over, because that program is no longer waited for. A
+    /// store with a single program always grants it.
     fn claim(&self, key: &Key, from: Option<&str>) -> Result<Claimed, LedgerError>;
 
-    /// Gives back the right to make a call. If that cannot be written now, it is written later.
+    /// Gives back the right to make a call. If this cannot be written now, it is written later.
     fn release(&self, key: &Key);
 
     /// The program that is making a call at the moment.
@@ -48,7 +48,7 @@ pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
     /// reserves its money, and refuses where a limit would be exceeded.
     fn sent(&self, request: &Request<'_>) -> Result<i64, Refused>;
 
-    /// Writes down that a request brought no answer. If that cannot be written now, it is written later.
+    /// Writes down that a request brought no answer. If this cannot be written now, it is written later.
     fn ended(&self, sent: &Sent, end: End, reason: &str);
 
     /// Writes an answer, and returns whether it is the call's first one. Gives back the right to make the call. The
@@ -58,7 +58,7 @@ pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
     /// Returns once everything that was to be written later is written.
     fn flush(&self) -> Result<(), LedgerError>;
 
-    /// Whether the store itself keeps to the limits of runs: several programs make one run, or a run has several files.
+    /// Whether the store itself enforces the limits of runs. It has to if several programs share a run, or a run has several files.
     fn keeps_budget(&self) -> bool {
         false
     }
@@ -74,13 +74,13 @@ pub(crate) trait Store: Queries + fmt::Debug + Send + Sync {
     }
 }
 
-/// What is asked of the calls that are kept, and what drops them.
+/// Queries over the stored calls, and their removal.
 pub(crate) trait Queries {
-    /// What a run has spent so far against its limits: what was paid, plus the upper bounds of requests that may have
-    /// been paid.
+    /// The spending of a run that counts against its limits: the paid amounts, plus the upper bounds of requests that may have been
+    /// paid.
     fn spent(&self, run: &str) -> Result<Spent, LedgerError>;
 
-    /// What a run has spent so far, told apart.
+    /// The spending of a run so far, itemised.
     fn spending(&self, run: &str) -> Result<Spending, LedgerError>;
 
     /// Passes the calls of a filter to `take`.
@@ -100,7 +100,7 @@ pub(crate) trait Queries {
     /// Whether there is an answer of a model at an address.
     fn has_answers_of(&self, model: &str, base_url: &str) -> Result<bool, LedgerError>;
 
-    /// What calls have cost.
+    /// Sums up the costs of calls.
     fn costs(&self, by: By) -> Result<Vec<CostLine>, LedgerError>;
 
     /// How many requests have no known answer.
@@ -153,7 +153,7 @@ pub(crate) struct Holder {
     pub(crate) is_gone: bool,
 }
 
-/// When a request may leave.
+/// The time window in which a request may leave.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slot {
     pub(crate) from: Instant,

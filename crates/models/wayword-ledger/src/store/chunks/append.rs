@@ -1,5 +1,5 @@
-//! The one thread that writes a chunk's file. It puts all lines that arrived during the last write into one write, and
-//! says that they are written when the disk has them.
+//! The one thread that writes a chunk's file. Each write has to wait for the disk, so the thread combines all lines that arrived during
+//! the last write into the next one. It reports a line as written once the disk has it.
 
 use super::line::{Entry, FORMAT};
 use crate::{LedgerError, Place, recording::MOST_LINE_BYTES};
@@ -31,7 +31,7 @@ pub(super) struct Appender {
 }
 
 impl Appender {
-    /// Goes on with a file of which the first `sound` bytes are sound. What comes after them is cut off.
+    /// Goes on with a file of which the first `sound` bytes are intact. The rest is cut off.
     pub(super) fn start(path: &Path, sound: u64) -> Result<Self, LedgerError> {
         let failed = LedgerError::io(path, "write the recording");
         let mut options = OpenOptions::new();
@@ -113,16 +113,16 @@ impl Drop for Appender {
     }
 }
 
-/// A file, and how much of it is sound.
+/// A file, and how many of its bytes are intact.
 struct Tail {
     file: File,
     sound: u64,
-    /// Whether something else may be behind the sound lines.
+    /// Whether the file may have other bytes behind the intact lines.
     is_torn: bool,
 }
 
 impl Tail {
-    /// Cuts off what a crash or a failed write has left behind the sound lines.
+    /// Cuts off the bytes that a crash or a failed write has left behind the intact lines.
     fn cut(&mut self) -> io::Result<()> {
         if self.is_torn {
             self.file.set_len(self.sound)?;
@@ -179,7 +179,7 @@ fn tell(group: Vec<Job>, written: &Written) -> Vec<Job> {
     unwritten
 }
 
-/// Makes the name of a new file last. Not every file system can do this, and those that cannot need not.
+/// Makes the name of a new file survive a loss of power, by syncing its folder. File systems that do not support this do not need it.
 fn keep_name(path: &Path) {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         let _ = File::open(folder).and_then(|folder| folder.sync_all());

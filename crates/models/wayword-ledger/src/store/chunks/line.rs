@@ -1,4 +1,4 @@
-//! A line of a chunk's file: JSON with a checksum of everything behind it.
+//! A line of a chunk's file: a JSON object that begins with the checksum of the rest of the line.
 
 use crate::{Key, Row, store::End};
 use serde::{Deserialize, Serialize};
@@ -11,10 +11,10 @@ pub(super) const FORMAT: u32 = 1;
 const BEGIN: &str = "{\"sha256\":\"";
 /// Hexadecimal digits of a checksum.
 const DIGITS: usize = 64;
-/// What stands between the checksum and what it covers.
+/// The characters between the checksum and the part of the line that it covers.
 const MIDDLE: &str = "\",";
 
-/// What a line says.
+/// The content of a line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Entry {
@@ -29,7 +29,7 @@ pub(crate) enum Entry {
 }
 
 impl Entry {
-    /// Its line, with the end of the line.
+    /// Encodes the entry as a line, including the line end.
     pub(super) fn to_line(&self) -> serde_json::Result<Vec<u8>> {
         let json = serde_json::to_vec(self)?;
         let rest = json.get(1..).unwrap_or_default();
@@ -47,7 +47,7 @@ impl Entry {
     /// Reads a line, with or without the end of the line.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The problem of the line.
     pub(crate) fn of_line(line: &[u8]) -> Result<Self, String> {
         let line = line.strip_suffix(b"\n").unwrap_or(line);
         let changed = || "its checksum does not match, so the line was changed by hand or damaged".to_owned();
@@ -79,7 +79,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_line_says_what_was_written_and_any_change_is_noticed(
+        fn a_written_line_reads_back_and_any_change_is_refused(
             reason in ".{0,30}",
             number: i64,
             at in 0.0..1.0f64,

@@ -1,7 +1,7 @@
-//! Recordings of chunks: each chunk of a shard has one file of JSON lines, to which requests and answers are appended.
+//! A store of recordings: each chunk of a shard has one file of JSON lines, to which requests and answers are appended.
 //!
-//! For network file systems, where a file of SQLite is not safe: there is no lock and no second file, and nothing that
-//! is written is written again. The caller sees to it that one program at a time writes a file.
+//! It is meant for network file systems, where a file of SQLite is not safe. It uses no locks and no second file, and never overwrites
+//! written bytes. The caller has to make sure that only one program at a time writes a file.
 
 mod append;
 mod line;
@@ -25,7 +25,7 @@ use tally::Tally;
 
 pub(crate) use line::Entry;
 
-/// The recordings of a shard. One chunk at a time is worked on.
+/// The recordings of a shard. One of its chunks is current.
 #[derive(Debug, Default)]
 pub(crate) struct Chunks {
     state: Mutex<State>,
@@ -33,14 +33,14 @@ pub(crate) struct Chunks {
 
 #[derive(Debug, Default)]
 struct State {
-    /// What was spent in the files of the other chunks.
+    /// The spending in the files of the other chunks.
     others: BTreeMap<PathBuf, Tally>,
     current: Option<Arc<Chunk>>,
-    /// What was spent in the file of the current chunk.
+    /// The spending in the file of the current chunk.
     tally: Tally,
 }
 
-/// The chunk that is worked on.
+/// The current chunk.
 #[derive(Debug)]
 struct Chunk {
     path: PathBuf,
@@ -105,7 +105,7 @@ impl State {
 }
 
 impl Chunk {
-    /// Opens a chunk's file, or makes it. The end of a write that a crash has torn is cut off.
+    /// Opens a chunk's file, or makes it. An incomplete last line, which a crash can leave, is cut off.
     fn open(path: &Path) -> Result<(Self, Tally), LedgerError> {
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder).map_err(LedgerError::io(folder, "make the folder"))?;
@@ -123,7 +123,7 @@ impl Chunk {
     }
 }
 
-/// What was spent in a file, by all runs. A file that does not exist counts as empty.
+/// The spending of all runs in a file. A file that does not exist counts as empty.
 pub(crate) fn spent_in(path: &Path) -> Result<Spending, LedgerError> {
     Ok(tally_of(path)?.spending(None))
 }
@@ -134,7 +134,7 @@ fn tally_of(path: &Path) -> Result<Tally, LedgerError> {
     Ok(tally)
 }
 
-/// The one name of a file, whatever its caller calls it.
+/// The absolute path of a file, so that one file has one name.
 fn whole(path: &Path) -> Result<PathBuf, LedgerError> {
     std::path::absolute(path).map_err(LedgerError::io(path, "find the recording"))
 }

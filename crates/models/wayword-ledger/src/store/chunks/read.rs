@@ -1,4 +1,4 @@
-//! Reads a chunk's file.
+//! Reads a chunk's file, and finds out where its intact part ends.
 
 use super::line::{Entry, FORMAT};
 use crate::{LedgerError, recording::MOST_LINE_BYTES};
@@ -8,8 +8,8 @@ use std::{
     path::Path,
 };
 
-/// Passes every entry of a file to `take`, and returns how many bytes of it are sound. What comes after them is the end
-/// of a write that a crash has torn: nothing was done on the strength of it. A file that does not exist is empty.
+/// Passes every entry of a file to `take`, and returns how many bytes of it are intact. The rest is an incomplete write, which a crash
+/// can leave; it was never acknowledged, so it can be cut off. A file that does not exist counts as empty.
 ///
 /// # Errors
 /// When the file cannot be read, is no chunk's file, or a line was changed.
@@ -56,7 +56,7 @@ fn next(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bo
     Ok(!bytes.is_empty())
 }
 
-/// Whether no line that follows is sound.
+/// Whether none of the following lines is intact.
 fn is_all_torn(reader: &mut BufReader<File>, bytes: &mut Vec<u8>) -> std::io::Result<bool> {
     while next(reader, bytes)? {
         if Entry::of_line(bytes).is_ok() {

@@ -1,4 +1,4 @@
-//! What was sent and spent, by run.
+//! Sums up the requests and the spending of each run over the entries of a chunk's file.
 
 use super::line::Entry;
 use crate::{Spending, budget::Spent, store::End};
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     runs: BTreeMap<String, Sums>,
-    /// Requests whose end is not known: they are in flight, or were when a program was killed.
+    /// Requests without a known end: they are in flight, or were when a program was killed.
     open: BTreeMap<i64, Open>,
     /// The highest number of a request.
     last: i64,
@@ -23,7 +23,7 @@ struct Open {
 #[derive(Debug, Default)]
 struct Sums {
     known: Spending,
-    /// What counts against the limit of a run: an answer without a price counts at its upper bound.
+    /// The amount that counts against the run's limit. An answer without a price counts at its upper bound.
     against_usd: f64,
 }
 
@@ -68,7 +68,7 @@ impl Tally {
         self.last.saturating_add(1)
     }
 
-    /// What a run has spent against its limits.
+    /// The spending of a run that counts against its limits.
     pub(super) fn spent(&self, run: &str) -> Spent {
         let sums = self.runs.get(run);
         let open = self.open.values().filter(|open| open.run == run);
@@ -79,7 +79,7 @@ impl Tally {
         }
     }
 
-    /// What a run has spent, or all runs.
+    /// The spending of a run, or of all runs.
     pub(super) fn spending(&self, run: Option<&str>) -> Spending {
         let is_of = |name: &str| run.is_none_or(|run| run == name);
         let runs = self.runs.iter().filter(|(name, _)| is_of(name)).map(|(_, sums)| sums.known);

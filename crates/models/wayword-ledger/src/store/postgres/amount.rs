@@ -1,4 +1,4 @@
-//! Money in whole billionths of a US dollar.
+//! Converts money to whole billionths of a US dollar, so that sums in the database are exact.
 
 /// Billionths in a dollar.
 const NANOS: f64 = 1e9;
@@ -6,7 +6,8 @@ const NANOS: f64 = 1e9;
 /// Largest amount, so that sums of a few do not overflow.
 const MOST: f64 = 1e18;
 
-/// Difference to a whole number that is a rounding error of the multiplication, and not part of the amount.
+/// An amount that is closer than this to a whole number of billionths is that number: the difference is a rounding error of the
+/// multiplication.
 const ROUNDING: f64 = 1e-3;
 
 /// An amount that is spent or reserved, rounded up.
@@ -14,7 +15,7 @@ pub(super) fn up(usd: f64) -> i64 {
     whole(usd, f64::ceil)
 }
 
-/// A limit, rounded down. A limit that is no number lets nothing out.
+/// A limit, rounded down. A limit that is not a number allows no spending.
 pub(super) fn limit(usd: f64) -> i64 {
     if usd.is_nan() { i64::MIN } else { whole(usd, f64::floor) }
 }

@@ -1,4 +1,4 @@
-//! A program's way to the database: its connections, its name, and the writes that it owes.
+//! A program's link to the database: its connections, its unique name, and pending writes that have to be made up for.
 
 use super::amount;
 use crate::{
@@ -22,11 +22,11 @@ use wayword_database::{
 /// Connections for everything but signs of life, which have one more.
 const CONNECTIONS: usize = 3;
 
-/// Rows of a run over which what came back is spread.
+/// Number of rows of `settled` for one run, over which programs spread their changes.
 const SLOTS: u64 = 16;
 
-/// Reserves the money of a request and writes the request down, if no limit is exceeded. The second time, it does
-/// nothing. What came back may have grown since the statement began, never shrunk: so no limit is exceeded.
+/// Reserves the money of a request and writes the request down, if no limit is exceeded. Executed a second time, it has no effect. The
+/// released amounts that it reads may have grown since the statement began, but never shrunk, so the limits hold.
 const RESERVE: &str = "
 WITH back AS (
     SELECT coalesce(sum(released - spent), 0)::bigint AS usd, coalesce(sum(cancelled), 0)::bigint AS calls
@@ -49,7 +49,7 @@ SELECT EXISTS (SELECT FROM written) OR EXISTS (SELECT FROM wayword_ledger.sent W
 
 const NEW_RUN: &str = "INSERT INTO wayword_ledger.runs (run) VALUES ($1) ON CONFLICT DO NOTHING";
 
-/// Ends a request and gives its money back, as far as it was not lost. The second time, it does nothing.
+/// Ends a request and releases its money, as far as it was not lost. Executed a second time, it has no effect.
 const END: &str = "
 WITH moved AS (
     UPDATE wayword_ledger.sent SET outcome = $3, reason = $4
@@ -62,7 +62,7 @@ ON CONFLICT (run, slot) DO UPDATE SET released = s.released + EXCLUDED.released,
 
 const RELEASE: &str = "DELETE FROM wayword_ledger.claims WHERE key = $1 AND holder = $2";
 
-/// A program's way to the database.
+/// A program's link to the database.
 #[derive(Debug)]
 pub(super) struct Link {
     pub(super) pool: Pool,
@@ -115,7 +115,7 @@ impl Link {
         self.next.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Carries out a statement.
+    /// Executes a statement.
     pub(super) fn rows(
         &self,
         doing: &'static str,
@@ -125,7 +125,7 @@ impl Link {
         Ok(self.pool.with(doing, |connection| connection.rows(sql, values))?)
     }
 
-    /// Carries out a statement with one row, and reads it.
+    /// Executes a statement that gives one row, and reads it.
     pub(super) fn row<T>(
         &self,
         doing: &'static str,

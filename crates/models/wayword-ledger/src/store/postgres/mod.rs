@@ -1,8 +1,8 @@
-//! A database on a server, which many programs on many machines share.
+//! A store in a database of PostgreSQL, which many programs on many machines share.
 //!
-//! Every change is one statement that does nothing the second time, because it is sent again after a lost connection. A
-//! statement that changes several tables changes them in this order, so that none waits for another in a circle: `runs`,
-//! `sent`, `calls`, `uses`, `claims`, `settled`.
+//! Every change is one statement that has no effect when it is executed twice, because it is sent again after a lost connection. To
+//! avoid deadlocks, statements that change several tables change them in this order: `runs`, `sent`, `calls`, `uses`, `claims`,
+//! `settled`.
 
 mod amount;
 mod link;
@@ -23,10 +23,10 @@ use wayword_database::{Database, postgres::types::ToSql, prepare};
 pub(crate) use presence::Pulse;
 pub use tables::TABLES;
 
-/// How often a request is tried again that fits by what the ledger says, and was refused all the same.
+/// How often a refused reservation is tried again if the request should fit by the current state of the ledger.
 const TRIES: usize = 20;
 
-/// The answer of a call. Notes that a run has used it; the second time, nothing is written.
+/// Selects the answer of a call and notes that a run has used it.
 const ANSWER: &str = concat!(
     "WITH used AS (
         INSERT INTO wayword_ledger.uses (run, key)
@@ -48,7 +48,8 @@ SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1), EXISTS (SELECT 
 
 const IS_ANSWERED: &str = "SELECT EXISTS (SELECT FROM wayword_ledger.calls WHERE key = $1)";
 
-/// A server that has just started has heard of nobody for a while, so nobody has ended yet.
+/// Selects the holder of a claim. While the server has been running for less than a lease, no holder counts as gone, because programs
+/// could not give signs of life before.
 const HOLDER: &str = "
 SELECT holder, (SELECT count(*) FROM wayword_ledger.sent AS s WHERE s.key = c.key AND s.program = c.holder),
     pg_postmaster_start_time() < clock_timestamp() - make_interval(secs => $2) AND NOT EXISTS (
@@ -57,8 +58,8 @@ SELECT holder, (SELECT count(*) FROM wayword_ledger.sent AS s WHERE s.key = c.ke
     )
 FROM wayword_ledger.claims AS c WHERE key = $1";
 
-/// Stores an answer if it is the first, ends its request, gives back what it did not cost, and releases the call. The
-/// numbers of rows that do not matter make one part wait for the other.
+/// Stores an answer if it is the first, ends its request, releases the money that it did not cost, and releases the claim. The
+/// conditions on row counts, which are always true, only make one part wait for the other.
 const ANSWERED: &str = "
 WITH moved AS (
     UPDATE wayword_ledger.sent SET outcome = 'answered', usd = $10

@@ -1,5 +1,5 @@
-//! Signs of life of the programs that use a ledger. A program without one for the time of a lease, by the database's clock, has
-//! ended, or cannot reach the database: its calls are free for others.
+//! Signs of life of the programs that use a ledger in a database. A program without one for the time of a lease, by the database's clock,
+//! has ended or cannot reach the database. Others may then make its calls.
 
 use super::link::Link;
 use crate::LedgerError;
@@ -10,7 +10,7 @@ use std::{
 };
 use wayword_database::Pool;
 
-/// How often a program gives a sign of life, and after what time without one it has ended.
+/// How often a program gives a sign of life, and after how long without one it counts as gone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pulse {
     pub(crate) beat: Duration,
@@ -18,22 +18,23 @@ pub(crate) struct Pulse {
 }
 
 impl Pulse {
-    /// How long a sign of life counts, unless the program says otherwise.
+    /// How long a sign of life counts by default.
     pub(crate) const LEASE: Duration = Duration::from_secs(60);
 
-    /// Six signs of life in the time for which one counts.
+    /// Six signs of life in each lease.
     pub(crate) fn of(lease: Duration) -> Self {
         Self { beat: lease / 6, gone: lease }
     }
 }
 
-/// A sign of life need not survive a crash of the server.
+/// Writes a sign of life. It is not synced to disk, because it need not survive a crash of the server.
 const BEAT: &str = "
 INSERT INTO wayword_ledger.presence (program, beat)
 SELECT $1, clock_timestamp() WHERE set_config('synchronous_commit', 'off', true) = 'off'
 ON CONFLICT (program) DO UPDATE SET beat = clock_timestamp()";
 
-/// Removes what ended programs have left behind. After a start of the server, nobody could give a sign of life before.
+/// Removes the entries and claims of programs that have ended. It waits for a lease after the start of the server, because programs
+/// could not give signs of life before.
 const SWEEP: &str = "
 WITH old AS (
     SELECT program FROM wayword_ledger.presence WHERE beat < clock_timestamp() - make_interval(secs => $1)
@@ -73,7 +74,7 @@ impl Presence {
 
 fn go_on(pool: &Pool, link: &Link, pause: Duration, stopped: &mpsc::Receiver<()>) {
     while let Err(mpsc::RecvTimeoutError::Timeout) = stopped.recv_timeout(pause) {
-        // If this fails for a while, others take this program's calls over, and the first answer stands.
+        // If this fails for a while, others take over this program's calls, and the first answer is kept.
         if beat(pool, &link.program).is_ok() {
             let _ = link.catch_up();
         }

@@ -1,4 +1,4 @@
-//! Lists, summarises and drops the calls of a database.
+//! The queries of the store in a database: lists, sums and removal of calls.
 
 use super::{
     Postgres, amount,

@@ -1,20 +1,21 @@
 //! One rate for each provider, for all programs together.
 //!
-//! For each provider the database keeps when the next request is due. A request takes that time as its own, and moves it
-//! on: so requests leave in the order in which they asked, and a program that asks more often gets no more than the
-//! others.
+//! For each provider the database keeps the time at which the next request is due. A request takes that time for itself and moves it
+//! forward, by its size (one request, or its tokens) divided by the rate. So requests leave in the order in which they asked. This is
+//! the algorithm GCRA, in the form of a virtual schedule.
 
 use super::link::Link;
 use crate::{LedgerError, Rates, store::Slot};
 use std::time::{Duration, Instant};
 
-/// How much may be sent above the rate in any second, in seconds of the rate.
+/// Burst: how much may be sent above the rate in any second, in seconds of the rate.
 const BURST_S: f64 = 0.1;
 
 /// Fewest requests that may be sent above the rate.
 const LEAST_BURST: f64 = 1.0;
 
-/// When the next request is due need not survive a crash of the server, which takes longer than a burst.
+/// Takes a turn. It is not synced to disk: the time of the next request need not survive a crash of the server, because a restart
+/// takes longer than a burst.
 const TURN: &str = "
 UPDATE wayword_ledger.rates
 SET requests = greatest(requests, clock_timestamp()) + make_interval(secs => $2),
@@ -29,19 +30,19 @@ const NEW: &str = "
 INSERT INTO wayword_ledger.rates (provider, requests, tokens) VALUES ($1, clock_timestamp(), clock_timestamp())
 ON CONFLICT DO NOTHING";
 
-/// What a request means for one rate, seconds.
+/// The timing of a request under one rate, seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Share {
-    /// For how long no other request is due.
+    /// Time until the next request is due.
     takes_s: f64,
-    /// How much earlier than due it may leave. This is half of the burst.
+    /// How much earlier than due it may leave, about half of the burst.
     early_s: f64,
-    /// How much later than due it may leave. This is the other half.
+    /// How much later than due it may leave, the other half.
     late_s: f64,
 }
 
 impl Share {
-    /// `most` is the least burst, in the unit of the rate.
+    /// `least` is the smallest burst, in the unit of the rate.
     fn of(per_s: Option<f64>, amount: f64, least: f64) -> Option<Self> {
         let per_s = per_s.filter(|per_s| per_s.is_finite() && *per_s > 0.0)?;
         let half = (per_s * BURST_S).max(least) / 2.0;

@@ -1,4 +1,4 @@
-//! Rows of `calls`.
+//! Reads rows of the table `calls`, and checks their checksums.
 
 use crate::{Answer, Call, Key, LedgerError, Place, Row, checksum};
 use wayword_database::postgres;
@@ -15,7 +15,7 @@ pub(super) use columns;
 /// Reads a row with `columns`, and checks it.
 ///
 /// # Errors
-/// When the row is not as it was written.
+/// When the row was changed after it was written.
 pub(super) fn sound(row: &postgres::Row, place: &Place) -> Result<Row, LedgerError> {
     let text = |at: usize| row.try_get::<_, String>(at);
     let changed = || LedgerError::Changed {

@@ -1,4 +1,4 @@
-//! Tables.
+//! The tables of a ledger in a database.
 
 use wayword_database::Tables;
 
@@ -8,12 +8,12 @@ pub const TABLES: Tables = Tables { schema: "wayword_ledger", steps: &[FIRST], g
 /// `calls`, `uses`, `sent` and `claims` are as in a file. `answer` is a string of JSON, because a text of PostgreSQL
 /// cannot hold the character 0. Money is in whole billionths of a dollar, so that sums are exact.
 ///
-/// `runs` has what was ever reserved for the requests of a run; every request changes its row, so nothing else does.
-/// `settled` has what came back: a run has a few rows there, and each program one of them, so that programs do not wait
-/// for each other. What a run may have cost at most is `reserved - released + spent`.
+/// `runs` has the sum of all reservations for the requests of a run. Every request changes this row, so no other statement does.
+/// `settled` has the amounts that were released or spent: a run has a few rows there, and each program changes one of them, so that
+/// programs do not wait for each other. The most that a run may have cost is `reserved - released + spent`.
 ///
-/// `presence` has a sign of life of each program, and `rates` when the next request and the next token to a provider
-/// are due.
+/// `presence` has the last sign of life of each program, and `rates` the times at which the next request and the next token to a
+/// provider are due.
 const FIRST: &str = "
 CREATE TABLE wayword_ledger.calls (
     key TEXT COLLATE \"C\" PRIMARY KEY, model TEXT NOT NULL, base_url TEXT NOT NULL, request TEXT NOT NULL,

@@ -1,4 +1,4 @@
-//! A file of SQLite, or one in memory.
+//! A store in a file of SQLite, which programs on one machine share, or in memory.
 
 mod presence;
 mod queries;
@@ -18,10 +18,10 @@ use std::{
 
 use writer::{Write, Writer};
 
-/// How long this program waits for another one that writes.
+/// How long SQLite waits for another program that is writing.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A ledger's file: one connection that reads, one thread that writes.
+/// A ledger's file, with one connection for reading and one thread for writing.
 #[derive(Debug)]
 pub(crate) struct Sqlite {
     path: PathBuf,
@@ -80,7 +80,7 @@ impl Sqlite {
     }
 
     /// The name under which other programs know this one; `None` for a ledger in memory, which has no other programs.
-    /// The first call also removes what ended programs left behind.
+    /// The first call also removes the files and claims of programs that have ended.
     fn name(&self) -> Result<Option<&str>, LedgerError> {
         if !self.is_shared {
             return Ok(None);

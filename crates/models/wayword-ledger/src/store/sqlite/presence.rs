@@ -1,6 +1,6 @@
 //! Finds out whether a program that uses the ledger is still running.
 //!
-//! Each program holds a lock on its own file beside the ledger. The system releases the lock when the program ends,
+//! Each program holds a lock on its own file next to the ledger. The system releases the lock when the program ends,
 //! however it ends. So reused process numbers cause no confusion, and the lock works between containers. Locks work on
 //! one machine: a ledger on a network file system is refused earlier.
 
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_killed_program_left_behind_is_swept_away() {
+    fn remove_stale_files_removes_the_file_of_a_killed_program() {
         let folder = tempfile::tempdir().unwrap();
         let ledger = folder.path().join("l.db");
         let here = Presence::new(&ledger).unwrap();
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_none_is_nobodys() {
+    fn is_gone_accepts_no_malformed_name() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("x"), "").unwrap();
         for name in ["", "../x", "a/../../x", "\u{e9}"] {

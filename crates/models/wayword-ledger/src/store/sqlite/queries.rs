@@ -1,4 +1,4 @@
-//! Lists, summarises and drops the calls of a file.
+//! The queries of the store in a file: lists, sums and removal of calls.
 
 use super::{
     Sqlite,

@@ -1,4 +1,4 @@
-//! Tables and rows.
+//! The tables of a ledger's file: creates or upgrades them, and reads rows of `calls` with their checksums.
 
 use crate::{Answer, Call, Key, LedgerError, Place, Row, checksum};
 use rusqlite::{Connection, ErrorCode, Transaction, TransactionBehavior};
@@ -12,7 +12,7 @@ use std::{
 const APPLICATION: i64 = 0x5777_6179;
 /// Version of the tables.
 const FORMAT: i64 = 2;
-/// Version of the first ledgers, whose answers have no checksums.
+/// Version of the first ledgers, in which answers have no checksums.
 const FIRST: i64 = 1;
 /// Version of a file without tables.
 const NEW: i64 = 0;
@@ -103,7 +103,7 @@ fn write_ahead(connection: &Connection) -> rusqlite::Result<()> {
 /// Reads a row of `calls` with [`COLUMNS`], and checks it. Rows of the first ledgers have no checksum.
 ///
 /// # Errors
-/// When the row is not as it was written.
+/// When the row was changed after it was written.
 pub(super) fn sound(row: &rusqlite::Row<'_>, path: &Path) -> Result<Row, LedgerError> {
     let changed = || LedgerError::Changed {
         place: Place::file(path),

@@ -1,4 +1,5 @@
-//! The one thread that writes. It puts all writes that arrived during the last commit into one commit.
+//! The one thread that writes a ledger's file. Each commit has to wait for the disk, so the thread combines all writes that arrived
+//! during the last commit into the next one.
 
 use crate::{LedgerError, Place, Row, checksum, store::Claimed};
 use rusqlite::{Connection, Transaction, TransactionBehavior, params};
@@ -203,7 +204,7 @@ fn apply(transaction: &Transaction<'_>, write: &Write) -> rusqlite::Result<i64> 
     Ok(0)
 }
 
-/// What the number of a claim says.
+/// Decodes the number that a write of a claim returns.
 pub(super) fn claimed(written: i64) -> Claimed {
     match written {
         0 => Claimed::Ours,

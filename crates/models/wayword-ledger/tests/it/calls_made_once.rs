@@ -1,10 +1,8 @@
-//! Each call is made once, within the limits, and kept.
+//! Each call is made once, within the limits, and its answer is kept.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod common;
-
-use common::stores;
+use crate::common::stores;
 use serde_json::json;
 use std::{
     collections::BTreeMap,
@@ -26,7 +24,7 @@ fn call(number: usize) -> Call {
 }
 
 fn answer(text: &str, usd: f64) -> Answer {
-    common::answer(text, Some(usd))
+    crate::common::answer(text, Some(usd))
 }
 
 fn ask(run: &Run, number: usize) -> Result<Answer, OnceError<Refused>> {
@@ -116,7 +114,7 @@ fn threads_that_ask_the_same_get_one_answer_that_is_asked_for_once() {
 }
 
 #[test]
-fn one_that_fails_is_tried_by_those_who_waited() {
+fn a_failed_call_is_tried_again_by_a_waiting_thread() {
     for store in stores("one_that_fails_is_tried_by_those_who_waited") {
         let run = store.open().run("a", Limits::default()).unwrap();
         let tries = AtomicUsize::new(0);
@@ -179,7 +177,7 @@ fn money_is_bounded_however_many_ask_at_once() {
 }
 
 #[test]
-fn what_was_lost_counts_at_its_upper_bound() {
+fn lost_requests_count_at_their_upper_bounds() {
     for store in stores("what_was_lost_counts_at_its_upper_bound") {
         let ledger = store.open();
         let run = ledger.run("a", Limits::default()).unwrap();
@@ -203,7 +201,7 @@ fn what_was_lost_counts_at_its_upper_bound() {
 }
 
 #[test]
-fn a_stopped_run_sends_nothing_and_a_request_that_never_left_does_not_count() {
+fn a_stopped_run_sends_no_requests_and_cancelled_ones_do_not_count() {
     for store in stores("a_stopped_run_sends_nothing_and_a_request_that_never_left_does_not_count") {
         let run = store.open().run("a", Limits { max_usd: None, max_calls: Some(1) }).unwrap();
         let never_left: Result<_, OnceError<Refused>> = run.once(&call(0), |attempts| {
@@ -221,7 +219,7 @@ fn a_stopped_run_sends_nothing_and_a_request_that_never_left_does_not_count() {
 }
 
 #[test]
-fn a_recording_makes_the_run_again_and_nothing_else() {
+fn replay_answers_the_recorded_calls_and_no_others() {
     for store in stores("a_recording_makes_the_run_again_and_nothing_else") {
         let folder = tempfile::tempdir().unwrap();
         let ledger = store.open();

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod common;
-
-use common::{Store, stores};
+use crate::common::{Store, stores};
 use proptest::{prelude::*, test_runner::TestRunner};
 use serde_json::json;
 use std::{cell::Cell, sync::Mutex, thread};
@@ -37,7 +35,7 @@ fn ask_watched(
         match end {
             End::Answered(usd) => {
                 watch(usd.unwrap_or(0.0) - most_usd.unwrap_or(0.0));
-                Ok(common::answer("yes", usd))
+                Ok(crate::common::answer("yes", usd))
             }
             End::Failed { maybe_paid } => {
                 if !maybe_paid {
@@ -57,10 +55,10 @@ fn end(most_usd: f64) -> impl Strategy<Value = End> {
     ]
 }
 
-/// While eight threads ask, the sum of what is paid, maybe paid and in flight stays below the limit. So does the number
-/// of requests. A later process of the run knows both.
+/// While eight threads ask, the sum of the amounts that are paid, maybe paid and in flight stays below the limit. So does the number of
+/// requests. A later process of the run knows both.
 #[test]
-fn nothing_leaves_that_could_break_a_limit() {
+fn limits_hold_at_every_moment_with_many_threads() {
     let asked = prop::collection::vec((0.0..0.2f64).prop_flat_map(|most| (Just(most), end(most))), 64);
     let inputs = (0.0..2.0f64, 0u64..60, asked);
     for store in stores("nothing_leaves_that_could_break_a_limit") {
@@ -123,7 +121,7 @@ fn holds(store: &Store, case: usize, max_usd: f64, max_calls: u64, asked: &[(f64
 }
 
 #[test]
-fn a_price_that_is_no_amount_is_no_price() {
+fn an_invalid_price_counts_as_no_price() {
     for store in stores("a_price_that_is_no_amount_is_no_price") {
         let run = store.open().run("a", Limits { max_usd: Some(1.0), max_calls: None }).unwrap();
         for most_usd in [f64::NAN, f64::INFINITY, -1.0] {
@@ -141,7 +139,7 @@ fn a_price_that_is_no_amount_is_no_price() {
 }
 
 #[test]
-fn a_limit_that_is_no_amount_lets_nothing_out() {
+fn an_invalid_limit_refuses_every_request() {
     for store in stores("a_limit_that_is_no_amount_lets_nothing_out") {
         let run = store.open().run("a", Limits { max_usd: Some(f64::NAN), max_calls: None }).unwrap();
         assert!(matches!(ask(&run, 0, Some(0.1), End::Answered(None)), Err(OnceError::Call(Refused::MaxUsd { .. }))));

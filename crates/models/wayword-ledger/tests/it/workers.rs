@@ -3,9 +3,7 @@
 #![cfg(all(unix, feature = "postgres"))]
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test fails by panicking")]
 
-mod common;
-
-use common::{Store, database, open, postgres};
+use crate::common::{Store, database, open, postgres};
 use serde_json::json;
 use std::{
     collections::BTreeSet,
@@ -32,7 +30,7 @@ fn call(number: usize) -> Call {
 }
 
 fn answer(number: usize, usd: f64) -> Answer {
-    common::answer(&format!("{number}!"), Some(usd))
+    crate::common::answer(&format!("{number}!"), Some(usd))
 }
 
 /// Makes a call that may cost 0.001 and costs a part of it.
@@ -51,11 +49,13 @@ fn say(line: &str) {
 /// Starts one of the programs below.
 fn start(program: &str, store: &Store) -> Child {
     let mut command = Command::new(env::current_exe().unwrap());
-    command.args(["--exact", program, "--nocapture", "--test-threads=1"]).env(SPEC, store.spec());
+    command
+        .args(["--exact", &format!("workers::{program}"), "--nocapture", "--test-threads=1"])
+        .env(SPEC, store.spec());
     command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap()
 }
 
-/// The numbers that a program says behind a word.
+/// The numbers that a program prints behind a word.
 fn heard(out: ChildStdout, word: &str) -> impl Iterator<Item = u64> {
     let marked = format!("{word} ");
     let lines = BufReader::new(out).lines().map_while(Result::ok);
@@ -67,7 +67,7 @@ fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
 }
 
-/// Not a test of its own: makes calls that nobody else makes until the money is used up.
+/// Not a test of its own: makes calls that no other program makes until the money is used up.
 #[test]
 fn program_that_spends() {
     let Ok(spec) = env::var(SPEC) else { return };
@@ -89,7 +89,7 @@ fn program_that_spends() {
     });
 }
 
-/// What a run may have cost at most at this moment, billionths of a dollar.
+/// The most that a run may have cost up to this moment, billionths of a dollar.
 fn exposed(client: &mut wayword_database::postgres::Client) -> i64 {
     let sql = "SELECT coalesce((SELECT sum(reserved) FROM wayword_ledger.runs), 0)::bigint
                - coalesce((SELECT sum(released - spent) FROM wayword_ledger.settled), 0)::bigint";
@@ -207,7 +207,7 @@ fn workers_that_are_killed_lose_nothing_and_pay_for_nothing_twice() {
     assert!(kept.len() <= known, "something was heard and is gone");
     assert_eq!(store.count("sent") as u64, known as u64 + lost, "every request is answered or counted as lost");
     assert!(kills > 10 && lost <= 4 * kills, "{kills} kills, {lost} lost");
-    // What is lost stays reserved at its upper bound.
+    // Lost requests stay reserved at their upper bounds.
     assert_eq!(exposed(&mut database::past(&store)), 1_000_000 * (known as i64 + lost as i64));
     assert_eq!(
         store.count("claims WHERE NOT EXISTS (SELECT FROM wayword_ledger.calls WHERE calls.key = claims.key)"),
@@ -336,7 +336,7 @@ fn program_that_sleeps() {
 fn a_worker_that_was_suspended_too_long_finds_its_call_made() {
     let Some(store) = postgres("a_worker_that_was_suspended_too_long_finds_its_call_made") else { return };
     let mut command = Command::new(env::current_exe().unwrap());
-    command.args(["--exact", "program_that_sleeps", "--nocapture"]).env(SPEC, store.spec());
+    command.args(["--exact", "workers::program_that_sleeps", "--nocapture"]).env(SPEC, store.spec());
     let mut sleeps = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     let mut said = BufReader::new(sleeps.stdout.take().unwrap()).lines().map_while(Result::ok);
     assert!(said.any(|line| line.contains("sent 1")));

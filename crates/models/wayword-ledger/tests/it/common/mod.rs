@@ -17,7 +17,7 @@ use wayword_ledger::{Answer, Ledger};
 
 /// A place for a ledger, which is dropped with it.
 pub struct Store {
-    /// What names the place, for another program.
+    /// Names the place for another program.
     spec: String,
     _folder: Option<TempDir>,
     #[cfg(feature = "postgres")]
@@ -30,12 +30,12 @@ impl Store {
         open(&self.spec)
     }
 
-    /// What [`open`] takes.
+    /// The text that [`open`] takes.
     pub fn spec(&self) -> &str {
         &self.spec
     }
 
-    /// Waits until nothing is written any more for programs that were killed.
+    /// Waits until the database has finished all statements of programs that were killed.
     pub fn settle(&self) {
         #[cfg(feature = "postgres")]
         if self.kind() == "postgres" {
@@ -83,7 +83,7 @@ impl Store {
     }
 }
 
-/// All stores. `test` is told if one is left out.
+/// All stores. Prints a note with the name `test` if one is left out.
 pub fn stores(test: &str) -> Vec<Store> {
     let mut all = vec![in_folder("sqlite", "deep/ledger.db"), in_folder("chunks", "deep/chunk.jsonl")];
     all.extend(postgres(test));

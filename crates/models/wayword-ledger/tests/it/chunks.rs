@@ -77,7 +77,7 @@ fn limits_hold_over_all_chunks_of_a_shard() {
 }
 
 #[test]
-fn a_file_that_nobody_told_of_counts_from_when_it_is_turned_to() {
+fn turn_to_counts_a_file_that_was_not_among_the_earlier_ones() {
     let folder = tempfile::tempdir().unwrap();
     let [first, second] = ["1", "2"].map(|name| folder.path().join(name));
     ask(&at(&first).run("a", Limits::default()).unwrap(), 1).unwrap();
@@ -181,7 +181,7 @@ fn a_chunk_can_be_replayed_and_has_no_second_file() {
     assert!(Ledger::replay(&recording).is_ok());
 }
 
-/// Not a test of its own: the program whose disk is full.
+/// Not a test of its own: the program that runs out of disk space.
 #[cfg(unix)]
 #[test]
 fn program_whose_disk_is_full() {
@@ -193,13 +193,13 @@ fn program_whose_disk_is_full() {
     std::io::stdout().write_all(format!("heard {heard}\n").as_bytes()).unwrap();
 }
 
-/// Nothing leaves without its line, and what was written stays. A limit on the size of files stands for a full disk.
+/// No request leaves before its line is written, and written lines are kept. A limit on the size of files simulates a full disk.
 #[cfg(unix)]
 #[test]
-fn what_cannot_be_written_does_not_leave() {
+fn a_full_disk_keeps_requests_from_leaving() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("chunk");
-    let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" --exact program_whose_disk_is_full --nocapture";
+    let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" --exact chunks::program_whose_disk_is_full --nocapture";
     let mut program = Command::new("sh");
     program.args(["-c", limited]).arg(env::current_exe().unwrap()).env(FULL, &file);
     let said = String::from_utf8(program.output().unwrap().stdout).unwrap();

@@ -1,4 +1,4 @@
-//! A ledger that is damaged, or cannot be written for a while, gives an error that says so, and loses nothing.
+//! A ledger that is damaged, or cannot be written for a while, reports that as an error and loses no answers.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -69,7 +69,7 @@ proptest! {
 }
 
 #[test]
-fn a_ledger_that_lost_its_end_says_what_to_do() {
+fn the_error_of_a_truncated_ledger_has_a_hint() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("l.db");
     ledger_of(&path, 100);
@@ -81,7 +81,7 @@ fn a_ledger_that_lost_its_end_says_what_to_do() {
 
 /// No thread waits until the use of an answer is written. If the write fails now, it is done later.
 #[test]
-fn what_could_not_be_written_is_written_later() {
+fn failed_writes_are_made_later() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("l.db");
     ledger_of(&path, 3);

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod common;
-
-use common::{Store, shared_stores};
+use crate::common::{Store, shared_stores};
 use rusqlite::Connection;
 use serde_json::json;
 use wayword_ledger::{Answer, Call, Filter, Ledger, LedgerError, Limits, OnceError, Refused, Run};
@@ -33,7 +31,7 @@ fn run(store: &Store) -> Run {
 }
 
 #[test]
-fn a_changed_answer_is_told_and_never_used() {
+fn a_changed_answer_is_reported_and_never_used() {
     for store in shared_stores("a_changed_answer_is_told_and_never_used") {
         let kind = store.kind();
         let changes: &[&str] = match kind {

@@ -3,9 +3,7 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking, and its child talks to it")]
 
-mod common;
-
-use common::{open, stores};
+use crate::common::{open, stores};
 use serde_json::json;
 use std::{
     collections::BTreeSet,
@@ -20,7 +18,7 @@ use wayword_ledger::{Answer, Call, Filter, Limits, Refused};
 const LEDGER: &str = "WAYWORD_TEST_LEDGER";
 
 fn answer(call: &Call) -> Answer {
-    common::answer(call.key().as_str(), Some(0.1))
+    crate::common::answer(call.key().as_str(), Some(0.1))
 }
 
 /// Prints a line in one write, so that a kill leaves no half line of another thread.
@@ -54,10 +52,10 @@ fn child() {
     });
 }
 
-/// What a child prints until it has got `answers` answers and is killed.
+/// The lines that a child prints until it has got `answers` answers and is killed.
 fn killed_after(spec: &str, answers: usize) -> Vec<(String, String)> {
     let mut child = Command::new(env::current_exe().unwrap())
-        .args(["--exact", "child", "--nocapture", "--test-threads=1"])
+        .args(["--exact", "killed_process::child", "--nocapture", "--test-threads=1"])
         .env(LEDGER, spec)
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -82,7 +80,7 @@ fn killed_after(spec: &str, answers: usize) -> Vec<(String, String)> {
 }
 
 #[test]
-fn nothing_that_was_heard_is_lost_and_what_was_lost_is_counted() {
+fn a_killed_process_keeps_returned_answers_and_counts_lost_requests() {
     for store in stores("nothing_that_was_heard_is_lost_and_what_was_lost_is_counted") {
         let (mut kept, mut lost) = (BTreeSet::new(), 0);
         let rounds = if store.kind() == "sqlite" { 10 } else { 5 };

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod common;
-
-use common::{Store, open, shared_stores};
+use crate::common::{Store, open, shared_stores};
 use serde_json::json;
 use std::{
     env, fs,
@@ -29,7 +27,7 @@ fn call(number: usize) -> Call {
 }
 
 fn answer(text: &str) -> Answer {
-    common::answer(text, None)
+    crate::common::answer(text, None)
 }
 
 fn ask(run: &Run, number: usize, text: &str) -> Answer {
@@ -63,13 +61,13 @@ fn a_new_ledger_can_be_opened_by_many_at_once() {
 
 /// A new file: only these are made so fast that many rounds make sense.
 fn new_files() -> Vec<Store> {
-    vec![common::in_folder("sqlite", "ledger.db")]
+    vec![crate::common::in_folder("sqlite", "ledger.db")]
 }
 
 /// One program was no longer waited for, and another made its call. The second answer is dropped: both programs get the
 /// first one, as every later program will.
 #[test]
-fn the_first_answer_stands_for_whoever_asked_at_the_same_time() {
+fn all_programs_get_the_first_answer_to_a_call() {
     for store in shared_stores("the_first_answer_stands_for_whoever_asked_at_the_same_time") {
         let [first, second] = ["a", "b"].map(|run| store.open().run(run, Limits::default()).unwrap());
         let heard = second.once(&call(1), |attempts| -> Result<Answer, Refused> {
@@ -116,7 +114,10 @@ fn program_that_hangs() {
 
 fn start(test: &str, variable: &str, store: &Store, out: Stdio) -> Child {
     let mut command = Command::new(env::current_exe().unwrap());
-    command.args(["--exact", test, "--nocapture", "--test-threads=1"]).env(variable, store.spec()).stdout(out);
+    command
+        .args(["--exact", &format!("shared_ledger::{test}"), "--nocapture", "--test-threads=1"])
+        .env(variable, store.spec())
+        .stdout(out);
     command.stderr(Stdio::null()).spawn().unwrap()
 }
 
@@ -204,7 +205,7 @@ fn a_wait_for_another_program_ends_when_the_run_is_stopped() {
 }
 
 #[test]
-fn what_failed_for_one_program_is_tried_by_the_other_that_waited() {
+fn a_failed_call_is_tried_again_by_a_waiting_program() {
     for store in shared_stores("what_failed_for_one_program_is_tried_by_the_other_that_waited") {
         let [first, second] = ["a", "b"].map(|run| store.open().run(run, Limits::default()).unwrap());
         thread::scope(|scope| {
