@@ -1,4 +1,5 @@
-//! Time of a sentence encoder of MiniLM's size, with random weights or the weights in the folder `WAYWORD_MINILM`.
+//! Measures the time of a sentence encoder of MiniLM's size, with random weights or the weights in the folder
+//! `WAYWORD_MINILM`.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark fails by panicking")]
 

@@ -1,5 +1,5 @@
-//! Time of BLIP at the base models' size. `WAYWORD_BLIP` names a folder that `fixtures/make_blip.py --full` wrote.
-//! Without it nothing is measured.
+//! Measures the time of BLIP at the base models' size. `WAYWORD_BLIP` names a folder that `fixtures/make_blip.py
+//! --full` wrote. Without this variable the benchmark does not run.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Time of a CLIP of ViT-B/32's size with random weights, or of the model in the folder `WAYWORD_CLIP`.
+//! Measures the time of a CLIP of ViT-B/32's size with random weights, or of the model in the folder `WAYWORD_CLIP`.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may fail")]
 

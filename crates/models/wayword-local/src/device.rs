@@ -1,4 +1,4 @@
-//! The device and the precision of a model.
+//! Which device a model computes on, and in which precision its weights are kept.
 
 use crate::LocalError;
 use candle_core::DType;
@@ -13,9 +13,9 @@ pub enum Precision {
     /// 32 bits.
     #[default]
     F32,
-    /// 16 bits with the range of 32 bits: half the memory, for models that would not fit otherwise.
+    /// bfloat16: 16 bits with the range of 32. Halves the memory, for models that would not fit otherwise.
     Bf16,
-    /// 16 bits.
+    /// IEEE half precision: 16 bits with more digits than [`Precision::Bf16`] and a smaller range.
     F16,
 }
 

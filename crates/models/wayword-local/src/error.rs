@@ -1,19 +1,20 @@
-//! Errors of models in process.
+//! The error type of this crate. Each message ends with a hint that names the next step.
 
 use std::{path::PathBuf, sync::Arc};
 
-/// What to do about a damaged file. A fetch alone keeps the files that are in the cache.
+/// The hint for a damaged file. Its folder must be deleted first, because a fetch keeps the files that are in the
+/// cache.
 pub(crate) const FETCH_AGAIN: &str = "fetch it again: delete the folder models--ORG--NAME that holds it, and run `wayword models fetch hf/ORG/NAME`; if the folder is your own, copy the file into it again";
 
 /// A model cannot be found, fetched, loaded or computed.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum LocalError {
-    /// A name that is not valid.
+    /// The name of a model is not valid.
     #[error(
         "{name:?} is not the name of a model in process: {problem}\nhint: names are hf/ORG/NAME, hf/ORG/NAME@REVISION, hf/ORG/NAME@REVISION:FILE, or hf/PATH of a local folder that begins with / or ."
     )]
     Name {
-        /// What was given.
+        /// The name that the user gave.
         name: String,
         /// What is wrong with it.
         problem: String,
@@ -23,7 +24,7 @@ pub enum LocalError {
     Missing {
         /// Its path.
         file: PathBuf,
-        /// What it is.
+        /// Its purpose, as in "the tokenizer".
         what: &'static str,
         /// How to get it.
         hint: String,
@@ -33,7 +34,7 @@ pub enum LocalError {
     Io {
         /// The file.
         file: PathBuf,
-        /// What was tried.
+        /// The operation, as in "read".
         doing: &'static str,
         /// The system's error.
         source: Arc<std::io::Error>,
@@ -43,7 +44,7 @@ pub enum LocalError {
     File {
         /// The file.
         file: PathBuf,
-        /// What is wrong, with field or place.
+        /// The problem, with the field or the position in the file.
         problem: String,
         /// What to do.
         hint: &'static str,

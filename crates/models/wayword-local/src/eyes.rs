@@ -1,4 +1,4 @@
-//! BLIP and BLIP-2 as models that answer requests with a picture.
+//! Puts BLIP and BLIP-2 behind one trait, so that a request with a picture can go to either.
 
 use crate::{
     LocalError,
@@ -10,10 +10,10 @@ use wayword_core::{Image, Request};
 /// The most tokens of an answer. These models were trained on short answers, and repeat themselves in longer ones.
 const MOST_TOKENS: u32 = 40;
 
-/// The question for a description, to a model that only answers questions.
+/// The question that asks for a description, for a model that only answers questions.
 const DESCRIBE: &str = "what is in the picture?";
 
-/// A model that answers about a picture.
+/// A model that answers a request about one picture.
 pub(crate) trait Eye: Send + Sync {
     /// The form of request that it takes.
     fn kind(&self) -> EyeKind;
@@ -22,16 +22,16 @@ pub(crate) trait Eye: Send + Sync {
     fn reply(&self, request: &Request) -> Result<String, LocalError>;
 }
 
-/// The form of request that a model that sees takes.
+/// The form of request that a model takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EyeKind {
-    /// A picture and a question. With a picture and no words it describes the picture.
+    /// A picture and a question. Without a question the model describes the picture.
     Questions,
     /// A picture and a text that the model continues.
     Texts,
 }
 
-/// BLIP: one checkpoint answers questions, another one describes.
+/// BLIP. One checkpoint answers questions, another describes pictures; either may be absent.
 pub(crate) struct BlipEye {
     pub(crate) name: String,
     pub(crate) answers: Option<BlipVqa>,
@@ -81,7 +81,7 @@ impl Eye for Blip2Eye {
     }
 }
 
-/// The picture and the words of the one message that these models take.
+/// The picture and the text of a request. These models take one message with one picture.
 fn shown<'a>(name: &str, request: &'a Request) -> Result<(&'a Image, &'a str), LocalError> {
     let wrong = |problem: &str| LocalError::Compute { model: name.to_owned(), problem: problem.to_owned() };
     let [message] = &request.messages[..] else { return Err(wrong("it takes one message, not a conversation")) };

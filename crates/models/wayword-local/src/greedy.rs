@@ -1,10 +1,11 @@
-//! Greedy decoding.
+//! Greedy decoding: a language model writes a text token by token, and the most likely token is always taken.
 
 use candle_core::{D, DType, Result, Tensor};
 
-/// At most `most` tokens, each the most likely one, up to the token `end`, which is left out. `step` takes the latest
-/// token (none at first) and gives the logits [.., words] of the next one. If it gives several rows, the last one
-/// counts.
+/// Writes at most `most` tokens, and stops at the token `end`, which is not returned.
+///
+/// `step` takes the latest token (`None` at first) and returns the logits [.., words] of the next one. If it returns
+/// several rows, as for a whole prompt, the last row is the one that counts.
 pub(crate) fn greedy(most: usize, end: u32, mut step: impl FnMut(Option<u32>) -> Result<Tensor>) -> Result<Vec<u32>> {
     let mut said = Vec::new();
     while said.len() < most {

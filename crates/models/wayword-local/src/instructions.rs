@@ -1,13 +1,14 @@
-//! Instructions as the ids that agents were trained on: VLN-DUET's and VLN-HAMT's loaders read them from their files.
+//! Turns instructions into the token ids that navigation agents were trained on. The data loaders of VLN-DUET and
+//! VLN-HAMT read instructions in this form.
 
 use crate::{LocalError, text::Tokenizer};
 use std::path::Path;
 use wayword_core::contain::decoded;
 
-/// The longest instruction that these agents read, ids.
+/// The most ids of an instruction that these agents read, with the first and the last token.
 const LONGEST: usize = 512;
 
-/// Which family of tokenizers it is: agents' files are named after it.
+/// The family of a tokenizer. The agents' files are named after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TokenizerKind {
     /// BERT's: `[CLS]` before a text and `[SEP]` behind it.
@@ -25,7 +26,7 @@ pub struct InstructionTokenizer {
 }
 
 impl InstructionTokenizer {
-    /// Reads a file as `tokenizer.json`.
+    /// Reads a tokenizer from a file in the format of `tokenizer.json`.
     ///
     /// # Errors
     /// When it is missing or damaged, or has the special tokens of neither family.
@@ -47,8 +48,8 @@ impl InstructionTokenizer {
         self.kind
     }
 
-    /// The ids of a text between those of its family's first and last token. A text that is too long is cut, so that there
-    /// are 512 with these two.
+    /// The ids of a text between those of its family's first and last token. A text that is too long is cut, so that
+    /// there are 512 with these two.
     ///
     /// # Errors
     /// When the tokenizer fails on the text.
@@ -84,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_stands_between_the_tokens_of_its_family() {
+    fn ids_begin_and_end_with_the_tokens_of_the_family() {
         for (begin, end, kind) in [("[CLS]", "[SEP]", TokenizerKind::Bert), ("<s>", "</s>", TokenizerKind::XlmRoberta)]
         {
             let (_folder, file) = tokenizer(begin, end);
@@ -97,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_long_text_the_last_id_is_still_the_last_token_s() {
+    fn ids_of_a_long_text_still_end_with_the_last_token() {
         let (_folder, file) = tokenizer("[CLS]", "[SEP]");
         let tokenizer = InstructionTokenizer::load(&file).unwrap();
         for (words, length) in [(509, 511), (510, 512), (511, 512), (2000, 512)] {

@@ -1,10 +1,10 @@
-//! Reads the small JSON files of a model's folder.
+//! Reads the small JSON files of a model's folder, with errors that name the file and the field.
 
 use crate::{LocalError, error::FETCH_AGAIN};
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// Longest file that is read, bytes.
+/// The longest file that is read, bytes.
 const LONGEST: u64 = 4 << 20;
 
 /// Reads a required file.
@@ -35,7 +35,7 @@ pub(crate) fn read_if_there<T: DeserializeOwned>(folder: &Path, name: &str) -> R
 /// The largest size that is accepted. Larger sizes could overflow computations.
 const LARGEST_SIZE: usize = 1 << 20;
 
-/// What is wrong with a configuration's sizes, if anything is.
+/// The problem with the sizes of a configuration, if there is one. Each size comes with its name.
 pub(crate) fn size_problem(sizes: &[(&str, usize)]) -> Option<String> {
     let (name, size) = sizes.iter().find(|(_, size)| !(1..=LARGEST_SIZE).contains(size))?;
     Some(format!("{name}: {size} is not from 1 to {LARGEST_SIZE}"))
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_field_and_its_line() {
+    fn read_reports_the_wrong_field_and_its_line() {
         let folder = tempfile::tempdir().unwrap();
         let told = |text: &str| {
             std::fs::write(folder.path().join("config.json"), text).unwrap();

@@ -1,4 +1,5 @@
-//! Calls of a model in process, each made once and kept in the ledger, because they cost minutes, although no money.
+//! Makes each call of an in-process model once, and keeps its answer in the ledger. A call costs no money, but it may
+//! cost minutes.
 
 use crate::{EyeKind, eyes::Eye, picture::digest};
 use serde_json::{Value, json};
@@ -9,24 +10,24 @@ use std::{
 use wayword_core::{Finish, Image, LanguageModel, Message, ModelError, Reply, Request};
 use wayword_ledger::{Answer, Call, OnceError, Refused, Run};
 
-/// A model in process behind the ledger.
+/// An in-process model behind the ledger: a request that was answered before gets the answer from there.
 pub struct LocalModel {
     kept: Kept,
     eye: Arc<dyn Eye>,
 }
 
-/// How the calls of any model in process are made once and kept.
+/// Makes the calls of one in-process model, each once, through the ledger.
 pub(crate) struct Kept {
     /// `hf/ORG/NAME`.
     pub(crate) name: String,
-    /// The identity of the weights and their precision, which could change an answer too.
+    /// The identity of the weights and their precision. It is part of a call's key, because it may change the answer.
     pub(crate) origin: String,
     /// Held during a call: each call uses all threads, and two at once would need twice the memory.
     turn: Mutex<()>,
     run: Run,
 }
 
-/// Why a call was not answered.
+/// The reason why a call was not answered.
 #[derive(Debug, thiserror::Error)]
 enum Unanswered {
     #[error(transparent)]
@@ -46,7 +47,7 @@ impl LocalModel {
         self.eye.kind()
     }
 
-    /// The identity of its weights, and their precision.
+    /// The identity of the weights, and their precision.
     #[must_use]
     pub fn origin(&self) -> &str {
         &self.kept.origin
@@ -61,7 +62,7 @@ impl LocalModel {
     }
 }
 
-/// What could change the reply to a request, for the ledger.
+/// The parts of a request that may change the reply. They are the key under which the ledger keeps the answer.
 fn asked(request: &Request) -> Value {
     let message = |message: &Message| {
         let picture = message.images.first().map(|image| hash(image));
@@ -82,7 +83,7 @@ impl Kept {
         Self { name: name.to_owned(), origin, turn: Mutex::new(()), run }
     }
 
-    /// The answer to a request: the ledger's, or else a computed one, which the ledger keeps.
+    /// The answer to a request: the one in the ledger, or else a computed one, which the ledger then keeps.
     pub(crate) fn once(
         &self,
         request: Value,
@@ -126,7 +127,7 @@ impl LanguageModel for LocalModel {
     }
 }
 
-/// Tokens are not counted, because they cost nothing here.
+/// A new answer for the ledger. Tokens are not counted, because they are free here.
 fn answer(text: String, begun: Instant) -> Answer {
     Answer {
         text,
@@ -144,7 +145,7 @@ fn reply(answer: Answer) -> Reply {
     Reply { text: answer.text, finish, usage: None }
 }
 
-/// A picture's name in the ledger.
+/// The hash by which the ledger refers to a picture, as hex digits.
 pub(crate) fn hash(image: &Image) -> String {
     digest(image).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,10 +1,11 @@
-//! Models in process, from the unchanged public checkpoints: MiniLM, CLIP, BLIP, BLIP-2 and OWLv2.
+//! Runs models inside this process, from their unchanged public checkpoints: MiniLM, CLIP, BLIP, BLIP-2, OWLv2, the
+//! Grounding DINO family and GLIP.
 //!
-//! Tensors and devices are candle's. The models and their operators (`ops`) are this crate's own, because candle's
-//! models are several times slower on a CPU, and candle lacks half of them.
+//! Tensors and devices come from the library candle. The models and their operators (`ops`) are this crate's own,
+//! because candle's models are several times slower on a CPU, and candle lacks half of them.
 //!
 //! Architecture invariant: a checkpoint is untrusted. It is read tensor by tensor, the shape of each is checked against
-//! the configuration, and nothing in it is executed.
+//! the configuration, and no code in it is executed.
 
 mod bert;
 mod blip;

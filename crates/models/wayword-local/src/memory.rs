@@ -1,13 +1,17 @@
-//! Limits the memory of models.
+//! Refuses to load a model that would not fit into the memory.
+//!
+//! An estimate is made before a checkpoint is read, because a process that runs out of memory is killed without an
+//! error.
 
 use crate::{Device, LocalError, Precision, weights::Weights};
 use std::path::Path;
 
-/// The memory that a model needs in addition to its weights: a share of their size (3/10), and a fixed number of bytes.
+/// The memory that a model needs in addition to its weights: a share of their size (3/10, as numerator and
+/// denominator), and a fixed number of bytes.
 const BESIDE: (u64, u64) = (3, 10);
 const BASE: u64 = 300 << 20;
 
-/// Memory that models may still take.
+/// Counts the memory that models have taken, against a limit.
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
     /// The user's limit, bytes.
@@ -26,7 +30,7 @@ impl Budget {
         let needs = weights.saturating_add(weights / BESIDE.1 * BESIDE.0).saturating_add(BASE);
         let left = match self.most {
             Some(most) => most.saturating_sub(self.taken),
-            // This does not count the memory of earlier models, so nothing is subtracted.
+            // Earlier models have already reduced the free memory, so `taken` is not subtracted.
             None => free().unwrap_or(u64::MAX),
         };
         if needs > left {
@@ -47,7 +51,7 @@ pub(crate) fn of_checkpoint(folder: &Path, precision: Precision) -> Result<u64, 
     Ok(Weights::open(folder, &Device::cpu(), precision)?.bytes())
 }
 
-/// The same of a checkpoint that is one file.
+/// The same for a checkpoint that is one file.
 pub(crate) fn of_file(file: &Path, precision: Precision) -> Result<u64, LocalError> {
     Ok(Weights::of_file(file, &Device::cpu(), precision)?.bytes())
 }
@@ -56,7 +60,7 @@ fn gibibytes(bytes: u64) -> String {
     format!("{:.1} GiB", bytes as f64 / (1_u64 << 30) as f64)
 }
 
-/// The free memory of the machine, bytes, if the system gives it (Linux).
+/// The free memory of the machine, bytes, where the system reports it (Linux).
 fn free() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
@@ -69,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_does_not_fit_beside_the_others_is_refused() {
+    fn budget_refuses_a_model_that_does_not_fit_with_the_others() {
         let mut budget = Budget::new(Some(4 << 30));
         budget.take("hf/a/b", 1 << 30).unwrap();
         let error = budget.take("hf/c/d", 2 << 30).unwrap_err().to_string();
@@ -78,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_size_that_is_a_lie_is_refused() {
+    fn budget_refuses_an_impossible_size() {
         assert!(Budget::new(Some(1 << 40)).take("hf/a/b", u64::MAX).is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! Finds models in process by their names, and loads each once.
+//! Finds in-process models by their names (`hf/ORG/NAME`), and loads each of them once.
 
 use crate::{
     Device, LocalError, Precision,
@@ -19,7 +19,7 @@ use std::{
 };
 use wayword_ledger::Run;
 
-/// Gives access to models in process.
+/// Gives access to in-process models by their names.
 pub struct Models {
     hub: Hub,
     device: Device,
@@ -29,7 +29,7 @@ pub struct Models {
     loaded: Mutex<Loaded>,
 }
 
-/// The loaded models and their memory.
+/// The models that are loaded so far, and the memory that they take.
 #[derive(Default)]
 struct Loaded {
     models: BTreeMap<String, Arc<LocalModel>>,
@@ -37,7 +37,7 @@ struct Loaded {
     budget: Budget,
 }
 
-/// How models are loaded.
+/// The settings for loading models.
 #[derive(Debug, Clone)]
 pub struct Loading {
     /// The device on which they compute.
@@ -48,7 +48,7 @@ pub struct Loading {
     pub memory_bytes: Option<u64>,
 }
 
-/// The kind of a checkpoint.
+/// The architecture and the task of a checkpoint. BLIP has one checkpoint for answers and another for descriptions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Architecture {
     BlipAnswers,
@@ -56,7 +56,7 @@ enum Architecture {
     Blip2,
 }
 
-/// The part of `config.json` that gives the kind.
+/// The fields of `config.json` that identify the architecture.
 #[derive(Deserialize)]
 struct Config {
     model_type: Option<String>,
@@ -64,7 +64,7 @@ struct Config {
 }
 
 impl Models {
-    /// Models from a hub. Their calls are made once and kept by the run.
+    /// Models from a hub. `run` is the part of the ledger that keeps their answers.
     #[must_use]
     pub fn new(hub: Hub, loading: Loading, progress: Box<dyn Progress + Send + Sync>, run: Run) -> Self {
         let Loading { device, precision, memory_bytes } = loading;
@@ -72,7 +72,7 @@ impl Models {
         Self { hub, device, precision, progress, run, loaded: Mutex::new(loaded) }
     }
 
-    /// Checks whether a name could be that of a model that sees in process.
+    /// Checks that a name could be that of an in-process model for pictures. Reads no file.
     ///
     /// # Errors
     /// When it could not.
@@ -80,10 +80,11 @@ impl Models {
         parts(name).map(drop)
     }
 
-    /// Checks that a model's files are on this machine and of the right kind, and fetches missing ones. Loads nothing.
+    /// Checks that a model's files are on this machine and of the right kind, and fetches missing ones. Does
+    /// not load the model.
     ///
     /// # Errors
-    /// When the files cannot be fetched, or the model does not see.
+    /// When the files cannot be fetched, or the model does not take pictures.
     pub fn at_hand(&self, name: &str) -> Result<(), LocalError> {
         for part in &parts(name)? {
             let folder = self.hub.folder(part, &Needs::of_any(part), &*self.progress)?;
@@ -96,7 +97,7 @@ impl Models {
     /// it, if it is not on this machine, and loads it.
     ///
     /// # Errors
-    /// When the model cannot be fetched, is damaged, or does not see.
+    /// When the model cannot be fetched, is damaged, or does not take pictures.
     pub fn model(&self, name: &str) -> Result<Arc<LocalModel>, LocalError> {
         let mut loaded = self.loaded.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(model) = loaded.models.get(name) {
@@ -108,7 +109,7 @@ impl Models {
         Ok(model)
     }
 
-    /// Checks whether a name could be that of a detector in process.
+    /// Checks that a name could be that of an in-process detector. Reads no file.
     ///
     /// # Errors
     /// When it could not.
@@ -116,8 +117,8 @@ impl Models {
         detector_name(name).map(drop)
     }
 
-    /// Checks that a detector's files are on this machine and of a kind that detects, and fetches missing ones. Loads
-    /// nothing.
+    /// Checks that a detector's files are on this machine and of a kind that detects, and fetches missing ones. Does
+    /// not load the detector.
     ///
     /// # Errors
     /// When the files cannot be fetched, or the model does not detect.
@@ -209,7 +210,7 @@ impl Architecture {
     }
 }
 
-/// The models of a name.
+/// The one or two models of a name.
 fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
     let parts = rest.split('+').map(|part| ModelName::parse(&format!("hf/{part}")));
@@ -226,7 +227,7 @@ fn parts(name: &str) -> Result<Vec<ModelName>, LocalError> {
     Ok(parts)
 }
 
-/// The model of a detector's name.
+/// The model that a detector's name refers to.
 fn detector_name(name: &str) -> Result<ModelName, LocalError> {
     let rest = name.strip_prefix("hf/").ok_or_else(|| no_name(name, "it does not begin with hf/"))?;
     if rest.contains('+') {
@@ -243,7 +244,7 @@ fn no_name(name: &str, problem: &str) -> LocalError {
     LocalError::Name { name: name.to_owned(), problem: problem.to_owned() }
 }
 
-/// What could change a model's answers: its weights and their precision.
+/// A text that identifies what determines a model's answers: its weights and their precision.
 fn origin(identities: &[&str], precision: Precision) -> String {
     format!("in process: {} ({})", identities.join("+"), format!("{precision:?}").to_lowercase())
 }

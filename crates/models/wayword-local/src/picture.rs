@@ -1,6 +1,7 @@
-//! Turns pictures into tensors, as a checkpoint's `preprocessor_config.json` says.
+//! Turns pictures into tensors, with the steps that a checkpoint's `preprocessor_config.json` prescribes.
 //!
-//! Gives the same numbers as transformers' processors of CLIP, BLIP and BLIP-2 with Pillow.
+//! The numbers are the same as those of transformers' processors of CLIP, BLIP and BLIP-2 with Pillow, because a model
+//! gives other answers to slightly different pixels.
 
 mod config;
 mod edges;
@@ -23,14 +24,14 @@ pub(crate) struct Processor {
     height_px: usize,
     width_px: usize,
     filter: Filter,
-    /// The model's number for each value of a byte, for each colour.
+    /// The model's input for each value of a byte, for each colour.
     numbers: [[f32; 256]; 3],
 }
 
-/// How a picture is resized, pixels.
+/// The rule by which a picture is resized, pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Size {
-    /// The whole picture to the output size, whatever its proportions.
+    /// The whole picture to the output size. Its proportions may change.
     Whole,
     /// The shorter edge to this length, with the same proportions. Then the middle is cut out.
     ShortestEdge(usize),
@@ -91,12 +92,12 @@ impl Processor {
     }
 }
 
-/// The longer edge when the shorter one becomes `edge`, in Python's arithmetic.
+/// The length of the longer edge when the shorter one becomes `edge`, rounded as Python rounds it.
 fn longer(edge: usize, long: usize, short: usize) -> usize {
     ((edge * long) as f64 / short as f64) as usize
 }
 
-/// The picture of a view, for the model named `by`.
+/// The picture of a view. The error names the model `by`, which needs it.
 pub(crate) fn of_view<'a>(view: &'a View, by: &str) -> Result<&'a Image, ModelError> {
     let image = view.image.as_deref().filter(|image| !image.rgb().is_empty());
     image.ok_or_else(|| ModelError::NothingToSee {

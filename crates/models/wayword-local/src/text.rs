@@ -1,13 +1,13 @@
-//! Turns words into ids and back, with a checkpoint's `tokenizer.json`.
+//! Turns texts into token ids and back, with a checkpoint's `tokenizer.json`.
 
 use crate::{LocalError, error::FETCH_AGAIN};
 use std::path::{Path, PathBuf};
 use wayword_core::contain::decoded;
 
-/// Longest file of a tokenizer, bytes.
+/// The longest `tokenizer.json` that is read, bytes.
 const LONGEST: u64 = 64 << 20;
 
-/// Where a token's bytes begin and end in a text.
+/// The begin and end of a token in a text, bytes.
 pub(crate) type Span = (usize, usize);
 
 /// A checkpoint's tokenizer.
@@ -25,7 +25,7 @@ impl Tokenizer {
         Self::load_file(folder.join("tokenizer.json"))
     }
 
-    /// The same for a file of any name.
+    /// Like [`Tokenizer::load`], for a file of any name.
     pub(crate) fn load_file(file: PathBuf) -> Result<Self, LocalError> {
         let length = std::fs::metadata(&file).map_err(|_| LocalError::Missing {
             file: file.clone(),
@@ -57,24 +57,25 @@ impl Tokenizer {
         Ok(ids)
     }
 
-    /// The ids of a text with the special ones, and the bytes of the text that each stands for; none for special ones.
+    /// The ids of a text with the special ones, and for each id the bytes of the text that it comes from. The span of a
+    /// special id is empty.
     pub(crate) fn spans(&self, text: &str) -> Result<(Vec<u32>, Vec<Span>), LocalError> {
         let encoding = self.inner.encode(text, true).map_err(|error| self.wrong(&error.to_string()))?;
         Ok((encoding.get_ids().to_vec(), encoding.get_offsets().to_vec()))
     }
 
-    /// How many words there are.
+    /// The number of tokens of the vocabulary.
     pub(crate) fn size(&self) -> usize {
         self.inner.get_vocab_size(true)
     }
 
-    /// The ids of a part of a text, without special ids.
+    /// The ids of a text, without the special ids that mark its beginning and end.
     pub(crate) fn inner_ids(&self, text: &str) -> Result<Vec<u32>, LocalError> {
         let encoding = self.inner.encode(text, false).map_err(|error| self.wrong(&error.to_string()))?;
         Ok(encoding.get_ids().to_vec())
     }
 
-    /// The id of a token; `None` where there is no such token.
+    /// The id of a token; `None` if the vocabulary lacks it.
     pub(crate) fn id(&self, token: &str) -> Option<u32> {
         self.inner.token_to_id(token)
     }

@@ -1,10 +1,10 @@
-//! The configuration files of a sentence encoder.
+//! Reads and checks the configuration files of a BERT and of a sentence encoder.
 
 use crate::{LocalError, json, json::size_problem, ops::Activation};
 use serde::Deserialize;
 use std::path::Path;
 
-/// `config.json`.
+/// `config.json`, with the names of transformers.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Config {
     pub(crate) vocab_size: usize,
@@ -21,7 +21,7 @@ pub(crate) struct Config {
     model_type: Option<String>,
 }
 
-/// The sizes of an encoder, where nothing else of it differs from BERT's.
+/// The sizes of an encoder that is a BERT in all other respects.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Sizes {
@@ -38,7 +38,7 @@ pub(crate) struct Sizes {
 const MOST_LAYERS: usize = 64;
 
 impl Sizes {
-    /// What is wrong with the sizes, if anything is.
+    /// The problem with the sizes, if there is one.
     pub(crate) fn problem(&self) -> Option<String> {
         let (heads, layers) = (self.num_attention_heads, self.num_hidden_layers);
         let sizes = [
@@ -103,7 +103,7 @@ impl Config {
         Ok(config)
     }
 
-    /// Checks what computations rely on.
+    /// Checks the values that the computation relies on.
     pub(crate) fn check(&self) -> Result<(), String> {
         if let Some(kind) = self.model_type.as_deref().filter(|kind| *kind != "bert") {
             return Err(format!("model_type: {kind} is not bert"));
@@ -115,7 +115,7 @@ impl Config {
         Ok(())
     }
 
-    /// The configuration of an encoder of these sizes.
+    /// The configuration of an encoder of these sizes, with BERT's activation and norms.
     pub(crate) fn uncased(sizes: &Sizes) -> Self {
         Self {
             vocab_size: sizes.vocab_size,
@@ -139,12 +139,12 @@ impl Config {
         self.vocab_size
     }
 
-    /// The most tokens that there are positions for.
+    /// The most tokens for which the model has positions.
     pub(crate) fn longest_text(&self) -> usize {
         self.max_position_embeddings
     }
 
-    /// The most tokens of a text.
+    /// The most tokens of a text: the model's limit, or the lower one that the sentence encoder sets.
     pub(super) fn longest(&self, folder: &Path) -> Result<usize, LocalError> {
         let own: Option<LengthConfig> = json::read_if_there(folder, "sentence_bert_config.json")?;
         let own = own.and_then(|own| own.max_seq_length).unwrap_or(usize::MAX);

@@ -8,7 +8,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Computes states from tokens.
+/// Computes a state for each token of a text.
 pub(crate) struct Encoder {
     words: Embedding,
     positions: Embedding,
@@ -18,7 +18,8 @@ pub(crate) struct Encoder {
     layers: Vec<Layer>,
 }
 
-/// One layer of an encoder, also by itself.
+/// One layer of an encoder: attention, then two linear layers, each with a residual and a norm. GLIP also uses single
+/// layers.
 pub(crate) struct Layer {
     qkv: Linear,
     mixed: Linear,
@@ -47,13 +48,13 @@ impl Encoder {
         })
     }
 
-    /// From ids [batch, length] and a bias [batch, 1, 1, length] that hides padding, states [batch, length, size].
+    /// The states [batch, length, size] of ids [batch, length]. `mask` [batch, 1, 1, length] hides padding.
     pub(crate) fn of(&self, ids: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         self.of_at(ids, &Tensor::arange(0, ids.dim(1)? as u32, ids.device())?, mask)
     }
 
-    /// The same for tokens at other positions [length] than one after another, and with a mask that can be broadcast to
-    /// [batch, heads, length, length].
+    /// Like [`Encoder::of`], for tokens with other positions [length] than 0, 1, 2 .., and a mask that can be broadcast
+    /// to [batch, heads, length, length].
     pub(crate) fn of_at(&self, ids: &Tensor, positions: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let positions = self.positions.of(positions)?;
         let x =
@@ -77,7 +78,7 @@ impl Layer {
         })
     }
 
-    /// From states [batch, length, size], the same shape.
+    /// Computes the next states from states [batch, length, size]. The shape stays the same.
     pub(crate) fn of(&self, x: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let size = x.dim(2)?;
         let qkv = self.qkv.of(x)?;

@@ -1,4 +1,5 @@
-//! BERT: sentence encoders with its architecture, such as all-MiniLM-L6-v2, and the text towers of other models.
+//! BERT: sentence encoders with its architecture (all-MiniLM-L6-v2, for example), and the text encoders of GLIP and
+//! Grounding DINO.
 
 mod config;
 mod encoder;

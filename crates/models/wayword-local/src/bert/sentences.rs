@@ -1,4 +1,4 @@
-//! Turns sentences into unit vectors, as sentence-transformers does.
+//! Turns sentences into vectors of length 1 that can be compared, as sentence-transformers does.
 
 use super::{
     config::{Config, Pooling},
@@ -9,10 +9,10 @@ use candle_core::{DType, Tensor};
 use std::path::Path;
 use wayword_core::{ModelError, TextEncoder};
 
-/// How many texts are encoded at a time.
+/// The number of texts that are encoded together.
 const BATCH: usize = 32;
 
-/// A sentence encoder.
+/// A sentence encoder: texts with a similar meaning get vectors with a large dot product.
 pub struct SentenceEncoder {
     name: String,
     tokenizer: Tokenizer,

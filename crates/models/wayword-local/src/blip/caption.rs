@@ -1,4 +1,4 @@
-//! BLIP for descriptions of pictures.
+//! BLIP's checkpoint that describes pictures.
 
 use super::{config::Config, decoder::Decoder, vision::Vision};
 use crate::{Device, LocalError, Precision, picture::Processor, text::Tokenizer, weights::Weights};

@@ -1,4 +1,4 @@
-//! BLIP's `config.json`. Missing values are those that transformers takes.
+//! Reads BLIP's `config.json`. Missing values get the defaults of transformers.
 
 use crate::{LocalError, json, ops::Activation};
 use serde::Deserialize;
@@ -115,7 +115,7 @@ impl Config {
 }
 
 impl VisionConfig {
-    /// What is wrong with it, if anything is.
+    /// The problem with the values, if there is one.
     pub(crate) fn problem(&self) -> Option<String> {
         let sizes = [
             ("vision_config.hidden_size", self.hidden_size),

@@ -1,4 +1,4 @@
-//! The text model that writes: one token after the other, always the most likely one.
+//! BLIP's text decoder. It writes an answer or a description token by token, and always takes the most likely token.
 
 use super::{
     config::TextConfig,
@@ -53,8 +53,8 @@ impl Decoder {
         self.words.of(&self.norm.of(&self.dense.of_then(states, self.activation)?)?)
     }
 
-    /// The tokens that follow a prompt: at most `most`, without the one that ends them. `prompt` leaves out the first
-    /// token of all.
+    /// The tokens that continue a prompt: at most `most`, without the one that ends a text. `prompt` does not contain
+    /// the token that begins every text.
     pub(super) fn speak(&self, prompt: &[u32], attended: &Attended, most: usize, device: &Device) -> Result<Vec<u32>> {
         let begun: Vec<u32> = std::iter::once(self.begin).chain(prompt.iter().copied()).collect();
         let mut past = self.text.past();

@@ -1,4 +1,5 @@
-//! BLIP's text model: BERT with attention to a picture, or to a question, in each layer.
+//! BLIP's text model: a BERT with a second attention in each layer. In the encoder and in the describing decoder it looks
+//! at the picture, in the answering decoder at the encoder's states of the question.
 
 use super::config::TextConfig;
 use crate::{
@@ -8,7 +9,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Computes states from tokens.
+/// Computes a state for each token of a text.
 pub(super) struct TextModel {
     words: Embedding,
     positions: Embedding,
@@ -36,7 +37,7 @@ struct Own {
     output: Output,
 }
 
-/// A layer whose output is added to its input, and then normalised.
+/// A linear layer with a residual: its output is added to an earlier state, and a norm follows.
 struct Output {
     dense: Linear,
     norm: LayerNorm,
@@ -66,7 +67,7 @@ impl TextModel {
         self.layers.iter().map(keys_values).collect()
     }
 
-    /// From a whole text [1, length], in which each token sees all others, states [1, length, size].
+    /// The states [1, length, size] of a whole text [1, length]. Each token sees all others.
     pub(super) fn read(&self, ids: &Tensor, attended: &Attended) -> Result<Tensor> {
         let x = self.embedded(ids, 0)?;
         self.layers
@@ -80,8 +81,8 @@ impl TextModel {
         vec![Past::default(); self.layers.len()]
     }
 
-    /// From the next tokens [1, length] after those of `past`, each of which sees all before it, states [1, length,
-    /// size].
+    /// The states [1, length, size] of the next tokens [1, length] after those of `past`. Each sees the tokens before
+    /// it.
     pub(super) fn go_on(&self, ids: &Tensor, attended: &Attended, past: &mut [Past]) -> Result<Tensor> {
         let before = past.first().map_or(Ok(0), Past::len)?;
         let length = ids.dim(1)?;

@@ -1,4 +1,4 @@
-//! BLIP's vision transformer. BLIP-2's has the same architecture.
+//! BLIP's vision transformer: a picture is cut into patches, and each gets a state. BLIP-2 has the same architecture.
 
 use super::config::VisionConfig;
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Computes states from pictures.
+/// Computes the states of the patches of pictures.
 pub(crate) struct Vision {
     patch: Linear,
     patch_px: usize,
@@ -49,7 +49,8 @@ impl Vision {
         })
     }
 
-    /// From pictures [batch, 3, height, width], states [batch, patches + 1, size].
+    /// The states [batch, patches + 1, size] of pictures [batch, 3, height, width]. The first state is the class
+    /// token's.
     pub(crate) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
         let pictures = pictures.to_dtype(self.class.dtype())?;
         let x = self.patch.of(&patches(&pictures, self.patch_px)?)?;

@@ -1,4 +1,4 @@
-//! BLIP for questions about pictures.
+//! BLIP's checkpoint that answers questions about pictures (visual question answering).
 
 use super::{
     config::Config,
@@ -16,7 +16,8 @@ use candle_core::{DType, Tensor};
 use std::path::Path;
 use wayword_core::{Image, Recent};
 
-/// How many pictures' states and keys are kept, about 45 MB each, because a frame gets about ten questions.
+/// The number of pictures for which keys and values are kept, about 45 MB each. A frame gets about ten questions, so
+/// recomputing them would waste most of the time.
 const KEPT: usize = 4;
 
 /// A BLIP that answers questions about pictures. An encoder reads the question and attends to the picture, and a

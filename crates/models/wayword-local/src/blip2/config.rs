@@ -1,4 +1,4 @@
-//! BLIP-2's `config.json`. Missing values are those that transformers takes.
+//! Reads BLIP-2's `config.json`. Missing values get the defaults of transformers.
 
 use crate::{LocalError, blip::VisionConfig as BlipVisionConfig, json, ops::Activation};
 use serde::Deserialize;
@@ -45,7 +45,7 @@ pub(super) struct QFormerConfig {
     pub(super) encoder_hidden_size: usize,
 }
 
-/// `text_config`: which language model, and its sizes.
+/// `text_config`: the language model and its sizes.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "model_type", rename_all = "snake_case")]
 pub(super) enum TextConfig {
@@ -185,7 +185,7 @@ impl VisionConfig {
 }
 
 impl TextConfig {
-    /// How many numbers a token's state has.
+    /// The number of numbers in a token's state.
     pub(super) fn width(&self) -> usize {
         match self {
             Self::T5(text) => text.d_model,
@@ -193,7 +193,7 @@ impl TextConfig {
         }
     }
 
-    /// What is wrong with it, if anything is.
+    /// The problem with the values, if there is one.
     fn problem(&self) -> Option<String> {
         let (sizes, problem) = match self {
             Self::T5(text) => {

@@ -22,10 +22,10 @@ use std::path::Path;
 use t5::T5;
 use wayword_core::{Image, Recent};
 
-/// How many pictures' tokens are kept, because a frame gets about ten questions.
+/// The number of pictures for which the condensed tokens are kept, because a frame gets about ten questions.
 const KEPT: usize = 4;
 
-/// A BLIP-2.
+/// A BLIP-2: answers questions about pictures, and continues texts about them.
 pub struct Blip2 {
     name: String,
     processor: Processor,
@@ -38,7 +38,7 @@ pub struct Blip2 {
     device: Device,
 }
 
-/// The language model.
+/// The language model that writes the answer.
 enum Speaker {
     T5(Box<T5>),
     Opt(Box<Opt>),
@@ -98,7 +98,7 @@ impl Blip2 {
         said.map_err(|error| LocalError::compute(&self.name, &error))
     }
 
-    /// The states of a picture's tokens, [queries, width] row by row.
+    /// The condensed states of a picture, [queries, width] row by row, as the language model gets them.
     ///
     /// # Errors
     /// When the computation fails.

@@ -1,4 +1,4 @@
-//! OPT (arXiv 2205.01068): a decoder that continues a text.
+//! The language model OPT (arXiv 2205.01068): a decoder that continues a text.
 
 use super::config::OptConfig;
 use crate::{
@@ -9,13 +9,13 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// OPT counts positions from here.
+/// The number of the first position. OPT does not count from 0.
 const FIRST_POSITION: usize = 2;
 
 /// The epsilon of OPT's norms.
 const EPSILON: f64 = 1e-5;
 
-/// An OPT with its norms before each layer.
+/// An OPT that has its norms before each layer, as all but the 350m model have.
 pub(super) struct Opt {
     words: Embedding,
     positions: Embedding,
@@ -70,7 +70,7 @@ impl Opt {
         })
     }
 
-    /// The logits of the token after the next tokens [1, length, size].
+    /// Reads the next tokens [1, length, size], and returns the logits of the token after them.
     fn go_on(&self, x: &Tensor, past: &mut [Past]) -> Result<Tensor> {
         let before = past.first().map_or(Ok(0), Past::len)?;
         let length = x.dim(1)?;

@@ -1,4 +1,5 @@
-//! The Q-Former: a few learned queries that attend to a picture's states.
+//! The Q-Former: a few learned queries look at the hundreds of states of a picture, and take from them what the
+//! language model needs.
 
 use super::config::QFormerConfig;
 use crate::{
@@ -32,7 +33,7 @@ struct Cross {
     output: Output,
 }
 
-/// A layer whose output is added to its input, and then normalised.
+/// A linear layer with a residual: its output is added to an earlier state, and a norm follows.
 struct Output {
     dense: Linear,
     norm: LayerNorm,
@@ -56,7 +57,7 @@ impl QFormer {
         })
     }
 
-    /// From states [1, count, size], states [1, queries, size].
+    /// Condenses the states [1, count, size] of a picture to [1, queries, size].
     pub(super) fn of(&self, states: &Tensor) -> Result<Tensor> {
         self.layers.iter().try_fold(self.norm.of(&self.tokens)?, |x, layer| layer.of(&x, states))
     }

@@ -1,4 +1,8 @@
-//! FlanT5 (arXiv 1910.10683, 2210.11416): an encoder that reads and a decoder that answers.
+//! The language model FlanT5 (arXiv 1910.10683, 2210.11416): an encoder reads picture and prompt, and a decoder writes
+//! the answer.
+//!
+//! T5 has no position embeddings. Instead the distance between two tokens adds a learned number to their attention
+//! score. Far distances share such numbers in buckets: 5 has its own, while 90 and 100 may have the same.
 
 use super::config::T5Config;
 use crate::{
@@ -9,7 +13,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// A T5 with gated layers.
+/// A T5 with gated layers: the product of two linear layers goes through a third one.
 pub(super) struct T5 {
     words: Embedding,
     encoder: Stack,
@@ -27,7 +31,7 @@ struct Stack {
     distances: Distances,
 }
 
-/// What the distance between two tokens adds to a score, for each head: [buckets, heads].
+/// The numbers [buckets, heads] that the distance between two tokens adds to their score, by bucket and head.
 struct Distances {
     table: Embedding,
     buckets: usize,
@@ -116,7 +120,7 @@ impl Stack {
         })
     }
 
-    /// The states of a whole text [1, length, size], in which each token sees all others.
+    /// The states of a whole text [1, length, size]. Each token sees all others.
     fn read(&self, x: &Tensor) -> Result<Tensor> {
         let bias = self.distances.bias(0, x.dim(1)?, x)?;
         let read = |x, block: &Block| block.of(&x, &bias, None, &mut Past::default());
@@ -149,7 +153,8 @@ impl Stack {
 }
 
 impl Distances {
-    /// What is added to the scores of `length` queries after `before` tokens: [1, heads, length, before + length].
+    /// The numbers [1, heads, length, before + length] that are added to the scores of `length` queries after `before`
+    /// tokens.
     fn bias(&self, before: usize, length: usize, like: &Tensor) -> Result<Tensor> {
         let keys = before + length;
         let buckets = (0..length * keys).map(|at| self.bucket((at % keys) as i64 - (before + at / keys) as i64));
@@ -165,7 +170,7 @@ impl Distances {
             (false, _) => (self.buckets, 0),
         };
         let far = if self.both_ways { distance.unsigned_abs() } else { (-distance).max(0).unsigned_abs() } as usize;
-        // Half of the buckets are for one distance each, the others for ranges that become wider.
+        // Half of the buckets are for one distance each. The others are for ranges that become wider with the distance.
         let exact = buckets / 2;
         if far < exact {
             return (first + far) as u32;
@@ -205,7 +210,8 @@ impl Block {
         })
     }
 
-    /// T5 does not scale its scores.
+    /// Self-attention, attention to the encoder's states in a decoder, and the gated layers, each with a residual. T5
+    /// does not scale its attention scores.
     fn of(&self, x: &Tensor, bias: &Tensor, attended: Option<&(Tensor, Tensor)>, past: &mut Past) -> Result<Tensor> {
         let qkv = self.qkv.of(&self.norm.of(x)?)?;
         let width = qkv.dim(2)? / 3;

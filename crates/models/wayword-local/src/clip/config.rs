@@ -1,4 +1,5 @@
-//! The `config.json` of CLIP, and of OWLv2, which has the same towers. Missing values are those that transformers takes.
+//! Reads the `config.json` of CLIP, and of OWLv2, which has the same towers. Missing values get the defaults of
+//! transformers.
 
 use crate::{LocalError, json as files, ops::Activation};
 use serde::{Deserialize, de::DeserializeOwned};
@@ -10,7 +11,7 @@ use std::path::Path;
 pub(crate) struct Config {
     pub(crate) text: TextConfig,
     pub(crate) vision: VisionConfig,
-    /// How many numbers a vector has.
+    /// The length of a vector of a picture or a text.
     pub(crate) projection_dim: usize,
 }
 
@@ -20,7 +21,7 @@ pub(crate) struct TextConfig {
     pub(crate) layers: LayersConfig,
     pub(crate) vocab_size: usize,
     pub(crate) max_position_embeddings: usize,
-    /// The token that ends a text. `None` for the one with the highest id, whatever it is.
+    /// The token that ends a text. `None` if the token with the highest id ends it.
     pub(crate) eos_token_id: Option<u32>,
 }
 
@@ -50,7 +51,7 @@ pub(crate) enum Family {
     Owl,
 }
 
-/// `config.json` as it is written.
+/// `config.json` as it is in the file, before defaults are filled in.
 #[derive(Deserialize)]
 struct Written {
     model_type: Option<String>,
@@ -78,7 +79,7 @@ impl Config {
 }
 
 impl Family {
-    /// `model_type` of such checkpoints.
+    /// The `model_type` of the family's checkpoints.
     fn model_type(self) -> &'static str {
         match self {
             Self::Clip => "clip",
@@ -97,7 +98,7 @@ impl Family {
         }
     }
 
-    /// The text tower, with the given values over the defaults.
+    /// The text tower's configuration, with the given values over the defaults.
     fn text(self, given: Option<Map<String, Value>>) -> Result<TextConfig, String> {
         let mut given = given.unwrap_or_default();
         let (positions, end) = match self {
@@ -116,7 +117,7 @@ impl Family {
         overlaid("text_config", given, defaults)
     }
 
-    /// The vision tower, with the given values over the defaults.
+    /// The vision tower's configuration, with the given values over the defaults.
     fn vision(self, given: Option<Map<String, Value>>) -> Result<VisionConfig, String> {
         let (edge, patch) = match self {
             Self::Clip => (224, 32),
@@ -164,7 +165,7 @@ impl LayersConfig {
     }
 }
 
-/// The given values over the defaults.
+/// Replaces defaults by the given values, and reads the result. `part` is the name for errors.
 fn overlaid<T: DeserializeOwned>(part: &str, given: Map<String, Value>, defaults: Value) -> Result<T, String> {
     let Value::Object(mut all) = defaults else { return Err(format!("{part}: there are no defaults")) };
     all.extend(given.into_iter().filter(|(_, value)| !value.is_null()));

@@ -1,4 +1,4 @@
-//! CLIP as a model that says how well phrases fit views.
+//! CLIP as a grounder: it scores how well phrases fit views.
 
 use super::Clip;
 use crate::{
@@ -9,15 +9,16 @@ use sha2::{Digest, Sha256};
 use std::{collections::BTreeMap, sync::Arc};
 use wayword_core::{Grounder, Image, ModelError, Recent, View};
 
-/// A hash of the picture or the text that a vector is for.
+/// The hash of the picture or the text that a vector belongs to.
 type Key = [u8; 32];
 
-/// How many vectors of pictures are kept, and as many of texts: at most about 50 MB each.
+/// The most vectors of pictures that are kept, and as many of texts: about 50 MB each.
 const KEPT: usize = 16 << 10;
 
-/// Scores a phrase on a view by the cosine of their vectors, between -1 and 1. CLIP's `logit_scale` is left out,
-/// because it only matters if scores become probabilities. A phrase is used as it is: the caller may add "a photo of
-/// ..". The vectors of pictures and phrases are kept by their content.
+/// Scores a phrase on a view by the cosine of their vectors, between -1 and 1.
+///
+/// CLIP's `logit_scale` is left out, because it only matters if scores become probabilities. A phrase is used as it is:
+/// the caller may add "a photo of ..". The vectors of recent pictures and phrases are kept by their content.
 pub struct ClipGrounder {
     clip: Clip,
     images: Recent<Key, Vec<f32>>,
@@ -25,13 +26,13 @@ pub struct ClipGrounder {
 }
 
 impl ClipGrounder {
-    /// A grounder that asks a CLIP.
+    /// A grounder that uses this CLIP.
     #[must_use]
     pub fn new(clip: Clip) -> Self {
         Self { clip, images: Recent::new(KEPT), texts: Recent::new(KEPT) }
     }
 
-    /// Whether the model reads all of a phrase. The end of a longer one is cut off.
+    /// Whether the model reads a phrase to its end. The end of a phrase that is too long is cut off.
     ///
     /// # Errors
     /// When the phrase cannot be made into tokens.
@@ -70,7 +71,8 @@ impl Grounder for ClipGrounder {
     }
 }
 
-/// The vectors of things, in their order. Known vectors are reused, and the others are computed, each once.
+/// The vectors of pictures or texts, in their order. Recent vectors are reused, and each of the others is computed
+/// once.
 fn vectors<T: Copy>(
     recent: &Recent<Key, Vec<f32>>,
     things: &[T],

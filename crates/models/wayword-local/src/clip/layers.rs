@@ -1,5 +1,5 @@
-//! The transformer of both towers (transformers' `CLIPEncoder`), with a norm before each sublayer and a residual around
-//! it.
+//! The transformer layers of both towers (transformers' `CLIPEncoder`), with a norm before each sublayer and a residual
+//! around it.
 
 use super::config::LayersConfig;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Layers that give the states of all tokens, or of one token of each text or picture.
+/// A stack of layers that computes the states of all tokens, or of one token of each text or picture.
 pub(crate) struct Layers {
     before: Vec<Layer>,
     last: Layer,
@@ -34,13 +34,13 @@ impl Layers {
         Ok(Self { before: (0..last).map(layer).collect::<std::result::Result<_, _>>()?, last: layer(last)? })
     }
 
-    /// From x [batch, length, size] and a mask [length, length], the states of all tokens.
+    /// The states of all tokens x [batch, length, size], with a mask [length, length].
     pub(crate) fn all(&self, x: Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         self.before.iter().chain([&self.last]).try_fold(x, |x, layer| layer.all(&x, mask))
     }
 
-    /// From x [batch, length, size] and a mask [length, length], the state of token `at` of each, [batch, 1, size]. The
-    /// last layer computes only this state.
+    /// The state [batch, 1, size] of one token `at` of each text or picture in x [batch, length, size], with a mask
+    /// [length, length]. The last layer computes only this state, which saves most of its work.
     pub(crate) fn of(&self, x: Tensor, mask: Option<&Tensor>, at: &[u32]) -> Result<Tensor> {
         let x = self.before.iter().try_fold(x, |x, layer| layer.all(&x, mask))?;
         let (batch, length, size) = x.dims3()?;
@@ -60,7 +60,7 @@ impl Layers {
     }
 }
 
-/// The queries (0), keys (1) or values (2), which are side by side in one tensor.
+/// The queries (`at` 0), keys (1) or values (2) of a tensor that has them side by side.
 fn third(qkv: &Tensor, at: usize) -> Result<Tensor> {
     let size = qkv.dim(2)? / 3;
     qkv.narrow(2, at * size, size)

@@ -1,4 +1,5 @@
-//! CLIP: turns pictures and texts into vectors that can be compared (ViT-B/32, B/16, L/14 and similar models).
+//! CLIP: turns pictures and texts into vectors that can be compared (ViT-B/32, B/16, L/14 and similar models). OWLv2
+//! uses the same two networks, which are called towers.
 
 mod config;
 mod grounder;

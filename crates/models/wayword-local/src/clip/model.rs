@@ -1,4 +1,4 @@
-//! Both towers of CLIP, and the projections into their common space.
+//! The whole CLIP: the text tower, the vision tower, and the projections into the space in which they are compared.
 
 use super::{
     config::{Config, Family},
@@ -13,10 +13,10 @@ use candle_core::{DType, Result as Computed, Tensor};
 use std::path::Path;
 use wayword_core::Image;
 
-/// How many pictures or texts are computed at a time.
+/// The number of pictures or texts that are computed together.
 pub(super) const BATCH: usize = 32;
 
-/// Turns pictures and texts into vectors of length 1. Their dot product says how well a text fits a picture.
+/// Turns pictures and texts into vectors of length 1. The larger their dot product, the better a text fits a picture.
 pub struct Clip {
     name: String,
     processor: Processor,
@@ -110,7 +110,7 @@ impl Clip {
         Ok(vectors)
     }
 
-    /// Whether the model reads all of a text. The end of a longer one is cut off.
+    /// Whether the model reads a text to its end. The end of a text that is too long is cut off.
     ///
     /// # Errors
     /// When the text cannot be made into tokens.

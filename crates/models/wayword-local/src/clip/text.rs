@@ -1,4 +1,4 @@
-//! The text tower (transformers' `CLIPTextModel`).
+//! CLIP's text tower (transformers' `CLIPTextModel`): one state for each text.
 
 use super::{config::TextConfig, layers::Layers};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// Old configurations name this wrong token as the end of a text.
+/// The token that old configurations name as the end of a text. It is wrong, and is ignored.
 const WRONG_END: u32 = 2;
 
 /// Computes one state for each text.
@@ -34,8 +34,8 @@ impl TextTower {
         })
     }
 
-    /// From the ids of texts, the state of the token that ends each, [batch, 1, size]. Padding comes after the end of a
-    /// text, so the mask hides it.
+    /// The states [batch, 1, size] of the tokens that end the texts. Padding comes after the end of a text, so the mask
+    /// hides it.
     pub(crate) fn of(&self, texts: &[&[u32]], device: &candle_core::Device) -> Result<Tensor> {
         let length = texts.iter().map(|ids| ids.len()).max().unwrap_or(0).max(1);
         let padded = |ids: &&[u32]| ids.iter().copied().chain(std::iter::repeat(0)).take(length).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! The vision tower (transformers' `CLIPVisionModel`).
+//! CLIP's vision tower (transformers' `CLIPVisionModel`): states of a picture and its patches.
 
 use super::{config::VisionConfig, layers::Layers};
 use crate::{
@@ -47,19 +47,19 @@ impl VisionTower {
         })
     }
 
-    /// From pictures [batch, 3, height, width] in 32 bits, the states of the class token [batch, 1, size].
+    /// The states [batch, 1, size] of the class tokens of pictures [batch, 3, height, width] in 32 bits.
     pub(crate) fn of(&self, pictures: &Tensor) -> Result<Tensor> {
         let x = self.layers.of(self.tokens(pictures)?, None, &vec![0; pictures.dim(0)?])?;
         self.last_norm.of(&x)
     }
 
-    /// From pictures [batch, 3, height, width] in 32 bits, the states of all tokens [batch, 1 + patches, size]: the class
+    /// The states [batch, 1 + patches, size] of all tokens of pictures [batch, 3, height, width] in 32 bits: the class
     /// token, then the patches, rows from the top.
     pub(crate) fn all(&self, pictures: &Tensor) -> Result<Tensor> {
         self.last_norm.of(&self.layers.all(self.tokens(pictures)?, None)?)
     }
 
-    /// What the layers begin with, [batch, 1 + patches, size].
+    /// The input of the layers, [batch, 1 + patches, size]: the class token and the patches, with their positions.
     fn tokens(&self, pictures: &Tensor) -> Result<Tensor> {
         let batch = pictures.dim(0)?;
         let cut = patches(&pictures.to_dtype(self.positions.dtype())?, self.patch_size)?;
@@ -70,7 +70,7 @@ impl VisionTower {
     }
 }
 
-/// The class token with its position, and the other positions. On the CPU they have 32 bits.
+/// The class token with its position added, and the positions of the patches. On the CPU they have 32 bits.
 fn placed(class: &Tensor, positions: &Tensor) -> Result<(Tensor, Tensor)> {
     let wide = |tensor: &Tensor| match tensor.device().is_cpu() {
         true => tensor.to_dtype(DType::F32),

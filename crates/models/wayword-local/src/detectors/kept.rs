@@ -1,4 +1,4 @@
-//! Calls of a detector in process, each made once and kept in the ledger.
+//! Makes each call of an in-process detector once, and keeps its answer in the ledger.
 
 use super::Ready;
 use crate::{
@@ -10,17 +10,18 @@ use std::{cell::RefCell, collections::VecDeque};
 use wayword_core::{Detector, Found, MOST_BOXES, ModelError, Scoring, View};
 use wayword_ledger::Run;
 
-/// A detector in process behind the ledger.
+/// An in-process detector behind the ledger.
 ///
-/// Where phrases do not change each other's scores, there is one call for each view and phrase, so that other lists of
-/// phrases find its answer; those that the ledger lacks are computed together. Otherwise there is one call for each view
-/// and list of phrases. An answer is the boxes as JSON.
+/// With some detectors the other phrases do not change a phrase's score. Then the ledger has one call for each view
+/// and phrase, so that another list with the same phrase finds the answer; the phrases that the ledger lacks are
+/// computed together. With the other detectors there is one call for each view and list of phrases. An answer is the
+/// boxes as JSON.
 pub struct LocalDetector {
     kept: Kept,
     ready: Ready,
 }
 
-/// Where one phrase was found.
+/// The boxes in which one phrase was found.
 type Places = Vec<Found>;
 
 impl LocalDetector {
@@ -28,7 +29,7 @@ impl LocalDetector {
         Self { kept: Kept::new(name, origin, run), ready }
     }
 
-    /// The identity of its weights, and their precision.
+    /// The identity of the weights, and their precision.
     #[must_use]
     pub fn origin(&self) -> &str {
         &self.kept.origin
@@ -56,7 +57,7 @@ impl LocalDetector {
     }
 
     fn one_by_one(&self, view: &View, picture: &str, phrases: &[&str]) -> Result<Vec<Places>, ModelError> {
-        // What was computed with the first phrase that the ledger lacks, for the phrases after it.
+        // The first phrase that the ledger lacks computes all phrases from there on. Their boxes wait here.
         let ahead: RefCell<VecDeque<Places>> = RefCell::default();
         let one = |(at, phrase): (usize, &&str)| {
             let answer = self.kept.once(self.asked(picture, &[phrase]), 0, || {
@@ -72,7 +73,7 @@ impl LocalDetector {
         phrases.iter().enumerate().map(one).collect()
     }
 
-    /// What the detector finds, one list per phrase.
+    /// The boxes that the detector finds, one list per phrase.
     fn computed(&self, view: &View, phrases: &[&str]) -> Result<Vec<Places>, ModelError> {
         let found = self.ready.detector.detect(&[view], phrases).pop();
         let mut found = found.unwrap_or_else(|| Err(self.failed("it gave no result")))?;
@@ -83,7 +84,7 @@ impl LocalDetector {
         Ok(found)
     }
 
-    /// What could change an answer, beside the weights, for the ledger.
+    /// The key of a call in the ledger: everything that may change an answer, except the weights.
     fn asked(&self, picture: &str, phrases: &[&str]) -> Value {
         json!({ "image_sha256": picture, "size": self.ready.size, "phrases": phrases })
     }
@@ -170,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn phrases_that_do_not_meet_are_kept_one_by_one_and_computed_together() {
+    fn independent_phrases_are_stored_singly_and_computed_together() {
         let folder = tempfile::tempdir().unwrap();
         let (detector, asked) = detector(folder.path(), false);
         assert_eq!(lefts(&detector.detect(&[&view()], &["bb"])[0]), [2.0]);
@@ -183,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn phrases_that_meet_are_kept_by_their_list() {
+    fn dependent_phrases_are_stored_by_their_list() {
         let folder = tempfile::tempdir().unwrap();
         let (detector, asked) = detector(folder.path(), true);
         for _ in 0..2 {
@@ -194,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_detector_with_the_wrong_number_of_results_keeps_nothing() {
+    fn a_wrong_number_of_results_is_not_stored() {
         let folder = tempfile::tempdir().unwrap();
         for meets in [false, true] {
             let (detector, asked) = detector(folder.path(), meets);

@@ -1,7 +1,7 @@
-//! Detectors in process: which kinds of checkpoints detect, and how their calls are kept.
+//! Detectors in process: which checkpoints are detectors, how they are loaded, and how the ledger keeps their answers.
 //!
-//! To add an architecture: a kind in [`Checkpoint`], the line by which [`Checkpoint::find`] knows it, its line in
-//! [`Checkpoint::load`], and what it keeps.
+//! To add an architecture, add a variant to [`Checkpoint`], the line by which [`Checkpoint::find`] recognises it, its
+//! line in [`Checkpoint::load`], and the bytes of features that it keeps in [`Checkpoint::bytes`].
 
 mod kept;
 
@@ -29,20 +29,19 @@ pub(crate) enum Checkpoint {
 /// A loaded detector.
 pub(crate) struct Ready {
     pub(crate) detector: Box<dyn Detector>,
-    /// How large pictures are for the network, in words: beside weights, picture and phrases it could change what is
-    /// found.
+    /// The size to which pictures are resized, in words. It is part of a call's key, because it may change the boxes.
     pub(crate) size: String,
 }
 
-/// The part of `config.json` that gives the kind.
+/// The field of `config.json` that identifies the architecture.
 #[derive(Deserialize)]
 struct Config {
     model_type: Option<String>,
 }
 
 impl Checkpoint {
-    /// The files of a detector's name; what is missing is fetched. A file as training leaves it (`.pth`) is GLIP's; else
-    /// `config.json` says what a model is.
+    /// Finds the files of a detector by its name, and fetches missing ones. A file as training leaves it (`.pth`) is
+    /// taken for GLIP's; the architecture of a folder is read from its `config.json`.
     pub(crate) fn find(hub: &Hub, name: &ModelName, progress: &dyn Progress) -> Result<Self, LocalError> {
         if name.is_trained() {
             return GlipFiles::find(hub, name, progress).map(Self::Glip);
@@ -87,7 +86,8 @@ impl Checkpoint {
         }
     }
 
-    /// The bytes of its weights at a precision, and of the pictures' features that it keeps beside them.
+    /// The memory that the detector takes, bytes: its weights at a precision, and the features of pictures that it
+    /// keeps.
     pub(crate) fn bytes(&self, precision: Precision) -> Result<u64, LocalError> {
         let (weights, kept) = match self {
             Self::Glip(files) => (memory::of_file(&files.weights, precision)?, glip::FEATURES_BYTES),

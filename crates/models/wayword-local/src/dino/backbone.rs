@@ -1,10 +1,10 @@
-//! The sizes of the backbone, as transformers writes them.
+//! Reads the sizes of the backbone, a Swin transformer, from the `backbone_config` of transformers.
 
 use crate::swin::SwinConfig;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-/// `backbone_config` as it is written. Missing values are those that transformers takes.
+/// `backbone_config` as it is in the file. Missing values get the defaults of transformers.
 #[derive(Deserialize)]
 #[serde(default)]
 struct Written {
@@ -46,7 +46,7 @@ impl Default for Written {
     }
 }
 
-/// The sizes of a Swin transformer, checked.
+/// Reads and checks the sizes of a Swin transformer.
 pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, String> {
     let given = given.into_iter().filter(|(_, value)| !value.is_null()).collect();
     let written: Written = serde_path_to_error::deserialize(Value::Object(given)).map_err(|e| e.to_string())?;
@@ -73,7 +73,8 @@ pub(super) fn swin_config(given: Map<String, Value>) -> Result<SwinConfig, Strin
     config.problem().map_or(Ok(config), Err)
 }
 
-/// The stages, from 0, whose outputs are taken: by number, of which 0 is what precedes the first stage, or by name.
+/// The stages, from 0, from which the model takes outputs. The file has numbers, in which 0 is the input of the first
+/// stage and 1 the first stage itself, or names (`stage1`).
 fn outputs(indices: Option<Vec<usize>>, names: Option<Vec<String>>) -> Result<Vec<usize>, String> {
     let from_name = |name: &String| name.strip_prefix("stage").and_then(|number| number.parse().ok());
     let numbers: Vec<Option<usize>> = match (indices, names) {

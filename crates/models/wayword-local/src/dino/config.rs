@@ -1,4 +1,4 @@
-//! The `config.json` of the family. Missing values are those that transformers takes.
+//! Reads and checks the `config.json` of the family. Missing values get the defaults of transformers.
 
 use super::backbone::swin_config;
 use crate::{
@@ -12,31 +12,31 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// The most levels of a picture's features.
+/// The most levels of a picture's features. A level is a grid of cells; each next level is coarser.
 const MOST_LEVELS: usize = 8;
 
-/// Groups of the norm behind each projection of the backbone's maps.
+/// The groups of channels of the norm that follows each projection of the backbone's maps.
 pub(super) const GROUPS: usize = 32;
 
 /// `config.json`, with missing values filled in.
 #[derive(Debug)]
 pub(super) struct Config {
     pub(super) family: Family,
-    /// Numbers of a state.
+    /// The length of a state.
     pub(super) size: usize,
-    /// Places that are looked at.
+    /// How many cells become queries, each with a box.
     pub(super) queries: usize,
-    /// Levels of a picture's features: those of the backbone, and coarser ones.
+    /// The levels of a picture's features: those of the backbone, then coarser ones.
     pub(super) levels: usize,
     pub(super) encoder: LayersConfig,
     pub(super) decoder: LayersConfig,
     /// Whether all layers of the decoder have the same head for boxes.
     pub(super) shares_boxes: bool,
-    /// Whether they have the same bias of the scores.
+    /// Whether all layers of the decoder have the same bias of the scores.
     pub(super) shares_classes: bool,
     /// The most tokens of a prompt.
     pub(super) longest: usize,
-    /// Temperature of the positions in a picture.
+    /// The temperature of the sines that encode a position in a picture.
     pub(super) temperature: f32,
     pub(super) epsilon: f64,
     pub(super) activation: Activation,
@@ -49,22 +49,22 @@ pub(super) struct Config {
 pub(super) struct LayersConfig {
     pub(super) count: usize,
     pub(super) heads: usize,
-    /// Width of the layers between two others.
+    /// The width between the two layers of a feed-forward network.
     pub(super) inner: usize,
-    /// Samples of each level and head.
+    /// How many places a query looks at, for each level and head.
     pub(super) points: usize,
 }
 
-/// What the checkpoints differ in.
+/// The kind of checkpoint. They differ in how a logit is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Family {
     /// Grounding DINO: a logit is the dot product of a state and a token.
     Plain,
-    /// MM Grounding DINO and LLMDet: the dot product is divided by the root of its length, and a bias is added.
+    /// MM Grounding DINO and LLMDet: the dot product is divided by the root of the state's length, and a bias is added.
     Mm,
 }
 
-/// `config.json` as it is written.
+/// `config.json` as it is in the file.
 #[derive(Deserialize)]
 #[serde(default)]
 struct Written {
@@ -198,7 +198,7 @@ impl Written {
         if !size.is_multiple_of(GROUPS) {
             return Err(format!("d_model: {size} cannot be cut into {GROUPS} groups"));
         }
-        // The encoder's layers have half of the heads, and half of the inner width, in what they do with the text.
+        // In their part for the text, the encoder's layers have half of the heads and half of the inner width.
         let heads = self.encoder_attention_heads;
         if !heads.is_multiple_of(2) || !size.is_multiple_of(heads) || !self.encoder_ffn_dim.is_multiple_of(heads) {
             let inner = self.encoder_ffn_dim;
@@ -228,7 +228,7 @@ impl Written {
     }
 }
 
-/// `text_config`, with transformers' values where it has none.
+/// Reads `text_config`. Missing values get the defaults of transformers.
 fn text_config(given: Map<String, Value>) -> Result<BertConfig, String> {
     let defaults = serde_json::json!({
         "vocab_size": 30522, "hidden_size": 768, "num_hidden_layers": 12, "num_attention_heads": 12,

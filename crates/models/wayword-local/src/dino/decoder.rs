@@ -1,4 +1,5 @@
-//! The decoder: queries with boxes, which look at each other, the text and the picture, and move their boxes.
+//! The decoder: in each layer the queries look at each other, at the text and at the picture, and then move their
+//! boxes.
 
 use super::{
     config::Config,
@@ -14,12 +15,12 @@ use candle_core::{Result, Tensor};
 
 type Loaded<T> = std::result::Result<T, LocalError>;
 
-/// Boxes are kept this far from 0 and 1 before they are moved.
+/// The numbers of a box are kept this far from 0 and 1 before it is moved, so that their logits stay finite.
 const EPSILON: f32 = 1e-5;
 
 /// All layers of the decoder.
 pub(super) struct Decoder {
-    /// What the queries begin with, the same for all pictures, [queries, size].
+    /// The learned first states of the queries, the same for all pictures, [queries, size].
     begin: Tensor,
     layers: Vec<Layer>,
     norm: LayerNorm,
@@ -38,16 +39,16 @@ struct Layer {
     feed: Feed,
 }
 
-/// What was found by the queries.
+/// The result of the queries: scores for each token, and boxes.
 pub(super) struct Seen {
-    /// How well each query fits each token, before a sigmoid, [queries, tokens].
+    /// The logits [queries, tokens] that score how well each query fits each token.
     pub(super) logits: Tensor,
-    /// Middle, width and height as shares of the picture.
+    /// The box of each query: middle, width and height, as shares of the picture's width and height.
     pub(super) boxes: Vec<[f32; 4]>,
 }
 
 impl Decoder {
-    /// Of a whole checkpoint.
+    /// Reads the decoder from a whole checkpoint.
     pub(super) fn load(all: &Scope<'_>, config: &Config) -> Loaded<Self> {
         let (size, model) = (config.size, all.sub("model"));
         let decoder = model.sub("decoder");
@@ -62,7 +63,7 @@ impl Decoder {
         })
     }
 
-    /// From the queries' first boxes, the best first, and the encoder's cells [1, cells, size] and text
+    /// Refines the queries' first boxes, the best first, with the encoder's cells [1, cells, size] and text
     /// [1, tokens, size].
     pub(super) fn of(&self, mut boxes: Vec<[f32; 4]>, cells: &Tensor, text: &Tensor, levels: &[Level]) -> Result<Seen> {
         let mut states = self.begin.narrow(0, 0, boxes.len())?.unsqueeze(0)?;
@@ -75,7 +76,7 @@ impl Decoder {
             )?;
             let places = self.places.of(&places.to_dtype(states.dtype())?)?;
             states = layer.of(&states, &places, &boxes, (cells, levels), text)?;
-            // Between layers the boxes are moved by the states as they are, at the end by the normalised ones.
+            // Between layers the states move the boxes as they are. At the end the normalised states do.
             if at < last {
                 boxes = moved(&boxes, &self.heads.moves(at, &states)?)?;
             }
@@ -86,7 +87,7 @@ impl Decoder {
     }
 }
 
-/// Boxes that were moved before a sigmoid.
+/// Moves boxes. The movement is added to the logits of their numbers, so that they stay between 0 and 1.
 fn moved(boxes: &[[f32; 4]], moves: &Tensor) -> Result<Vec<[f32; 4]>> {
     let logit = |share: f32| {
         let share = share.clamp(EPSILON, 1.0 - EPSILON);

@@ -1,4 +1,8 @@
 //! Multi-scale deformable attention: each query looks at a few places of each level, which it chooses itself.
+//!
+//! Ordinary attention would compare every query with every cell, several thousand of them. Here a linear layer turns
+//! the query into a few offsets and weights. The values at these places, interpolated between cells, are added with the
+//! weights.
 
 use super::{config::LayersConfig, features::Level};
 use crate::{
@@ -9,19 +13,19 @@ use crate::{
 use candle_core::{CpuStorage, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
-/// How many queries a thread computes at a time.
+/// The number of queries that a thread computes at a time.
 const PIECE: usize = 64;
 
 /// Deformable attention of one layer.
 pub(super) struct Deformable {
     value: Linear,
-    /// For each head, level and point: two offsets. Then for each of them a weight.
+    /// The outputs are two offsets for each head, level and point; then a weight for each head, level and point.
     points: Linear,
     out: Linear,
     shape: Sampling,
 }
 
-/// How many places are looked at.
+/// How many places a query looks at: `points` for each head and level.
 #[derive(Debug, Clone, Copy)]
 struct Sampling {
     heads: usize,
@@ -29,13 +33,14 @@ struct Sampling {
     points: usize,
 }
 
-/// Where queries look from.
+/// The places from which the offsets of queries count.
 #[derive(Clone, Copy)]
 pub(super) enum Origin<'a> {
-    /// From the middle of each cell of each level. An offset of 1 is a cell of the level that is looked at.
+    /// The queries are the cells of all levels, each with its own middle. An offset of 1 is one cell of the sampled
+    /// level.
     Cells,
-    /// From boxes by their middle, width and height, as shares of the picture. An offset of 1 is half of the box, divided
-    /// by the number of points.
+    /// Each query has a box: middle, width and height, as shares of the picture. An offset of 1 from the middle is half
+    /// of the box, divided by the number of points.
     Boxes(&'a [[f32; 4]]),
 }
 
@@ -60,7 +65,7 @@ impl Deformable {
         })
     }
 
-    /// What queries [1, queries, size] find in cells [1, cells, size].
+    /// The sums [1, queries, size] of the values that the queries sample from the cells [1, cells, size].
     pub(super) fn of(&self, queries: &Tensor, cells: &Tensor, levels: &[Level], from: Origin<'_>) -> Result<Tensor> {
         let value = self.value.of(cells)?.squeeze(0)?;
         let points = self.points.of(queries)?.squeeze(0)?;
@@ -76,14 +81,14 @@ impl Deformable {
 }
 
 impl Sampling {
-    /// Places that a query looks at.
+    /// The number of places that a query looks at, over all heads and levels.
     fn count(self) -> usize {
         self.heads * self.levels * self.points
     }
 }
 
-/// Where a query looks from, as shares of the picture, and how far an offset of 1 reaches: a share of the picture, or,
-/// where it is `None`, a cell.
+/// The place from which a query's offsets count, as shares of the picture, and the length of an offset of 1: a share of
+/// the picture, or one cell if it is `None`.
 type Start = ([f32; 2], Option<[f32; 2]>);
 
 fn starts(from: Origin<'_>, levels: &[Level], points: usize) -> Vec<Start> {
@@ -96,7 +101,7 @@ fn starts(from: Origin<'_>, levels: &[Level], points: usize) -> Vec<Start> {
     }
 }
 
-/// Where a sample lies in a level, in cells from the middle of the first one.
+/// The position of a sample in a level, in cells from the middle of the first cell.
 fn place((from, step): Start, level: Level, offset: [f32; 2]) -> (f32, f32) {
     let (width, height) = (level.width as f32, level.height as f32);
     match step {
@@ -105,7 +110,7 @@ fn place((from, step): Start, level: Level, offset: [f32; 2]) -> (f32, f32) {
     }
 }
 
-/// One pass over all queries on the processor.
+/// Samples for all queries in one pass on the processor.
 struct Look<'a> {
     shape: Sampling,
     levels: &'a [Level],
@@ -180,14 +185,15 @@ fn softmax(weights: &[f32], shares: &mut [f32]) {
 struct Map<'a> {
     values: &'a [f32],
     level: Level,
-    /// From one cell to the next.
+    /// The numbers from one cell to the next: those of all heads.
     size: usize,
-    /// Where the head's values begin within a cell.
+    /// The index of the head's first value within a cell.
     from: usize,
 }
 
 impl Map<'_> {
-    /// Adds the value at a place, interpolated between four cells, to a sum. Outside of the map it is 0.
+    /// Adds the value at a place, interpolated between four cells and times `share`, to a sum. Outside of the map
+    /// values are 0.
     fn add(&self, x: f32, y: f32, share: f32, sum: &mut [f32]) {
         let (width, height) = (self.level.width, self.level.height);
         if !(x > -1.0 && y > -1.0 && x < width as f32 && y < height as f32) {
@@ -195,7 +201,7 @@ impl Map<'_> {
         }
         let (left, top) = (x.floor(), y.floor());
         let (right_share, low_share) = (x - left, y - top);
-        // A cell outside counts 0, so that any cell can stand for it.
+        // A cell outside of the map has the weight 0, so its index may be that of any other cell.
         let both = |at: f32, count: usize, share: f32| {
             let first = at as isize;
             let is_in = |at: isize| if at >= 0 && at < count as isize { 1.0 } else { 0.0 };
@@ -215,7 +221,7 @@ impl Map<'_> {
     }
 }
 
-/// The same by candle's operators, for any device: rows of single heads are gathered.
+/// Samples with candle's operators, for any device. Its result is that of [`Look`].
 fn gathered(shape: Sampling, value: &Tensor, points: &Tensor, levels: &[Level], from: &[Start]) -> Result<Tensor> {
     let (device, dtype) = (value.device(), value.dtype());
     let ((cells, size), queries) = (value.dims2()?, points.dim(0)?);
@@ -229,7 +235,7 @@ fn gathered(shape: Sampling, value: &Tensor, points: &Tensor, levels: &[Level], 
     let mut sum = Tensor::zeros((queries * heads, size / heads), dtype, device)?;
     let mut begin = 0;
     for (at, &level) in levels.iter().enumerate() {
-        // Where a query looks from, and how far an offset of 1 reaches, in cells of this level.
+        // The start of each query and the length of an offset of 1, in cells of this level.
         let axis = |axis: usize, length: usize| -> Result<(Tensor, Tensor)> {
             let length = length as f32;
             let middle = from.iter().map(|(from, _)| from[axis] * length - 0.5).collect();

@@ -1,4 +1,4 @@
-//! The family as a [`Detector`].
+//! Uses the family's models as a [`Detector`]: turns the scores and boxes of queries into finds for each phrase.
 
 use super::{config::Family, decoder::Seen, model::Dino, prompt::Prompt, queries::sigmoid, text::Text};
 use crate::{LocalError, picture::of_view};
@@ -13,7 +13,7 @@ impl Dino {
         ModelError::Failed { model: self.name.clone(), reason: error.to_string() }
     }
 
-    /// Where phrases are in a picture: for each of them the best boxes first.
+    /// Finds phrases in a picture: for each phrase its boxes, the best first.
     ///
     /// # Errors
     /// When a phrase is too long, the picture has no pixels, or the computation fails.
@@ -35,7 +35,7 @@ impl Dino {
     }
 }
 
-/// For each phrase of a prompt the best boxes. A box scores for a phrase as its best token does.
+/// The best boxes for each phrase of a prompt. The score of a box for a phrase is that of the phrase's best token.
 fn boxes(seen: &Seen, prompt: &Prompt, image: &Image) -> candle_core::Result<Vec<Vec<Found>>> {
     let logits: Vec<Vec<f32>> = seen.logits.to_dtype(DType::F32)?.to_vec2()?;
     let (width, height) = (image.width_px() as f32, image.height_px() as f32);
@@ -64,7 +64,7 @@ fn boxes(seen: &Seen, prompt: &Prompt, image: &Image) -> candle_core::Result<Vec
     Ok(prompt.phrases.iter().map(of_phrase).collect())
 }
 
-/// Whether it consists of numbers; those of a damaged checkpoint may not.
+/// Whether score and box are finite. A damaged checkpoint may give other numbers.
 fn is_sound(found: Found) -> bool {
     found.score.is_finite() && found.box_px.iter().all(|edge| edge.is_finite())
 }

@@ -1,4 +1,4 @@
-//! The encoder: the states of cells and tokens, layer by layer, with each other and among themselves.
+//! The encoder: in each layer picture and text look at each other, then tokens at tokens, and cells at other cells.
 
 use super::{
     config::Config,
@@ -38,7 +38,7 @@ impl EncoderLayer {
         })
     }
 
-    /// From cells [1, cells, size] with their positions, and the text with its states so far.
+    /// Computes the next states of the cells [1, cells, size] and of the text's tokens [1, tokens, size].
     pub(super) fn of(
         &self,
         cells: &Tensor,

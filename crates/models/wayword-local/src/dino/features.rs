@@ -1,4 +1,5 @@
-//! A picture as states of its cells, before any text: the backbone's maps, projected to one width.
+//! Turns a picture into the states of its cells, which do not depend on the text. The backbone computes maps of the
+//! picture at several resolutions. Each is projected to the same width, and becomes one level.
 
 use super::{
     config::{Config, GROUPS},
@@ -14,33 +15,33 @@ use candle_core::{DType, Result, Tensor};
 
 type Loaded<T> = std::result::Result<T, LocalError>;
 
-/// The size of the last cells' kernels, and from one of them to the next.
+/// Edge and stride, in cells, of the convolution that makes the levels that are coarser than the backbone's maps.
 const KERNEL: usize = 3;
 const STRIDE: usize = 2;
 
-/// Added to the variances of groups.
+/// Added to the variances of groups, so that no division is by 0.
 const EPSILON: f64 = 1e-5;
 
-/// Makes features of pictures.
+/// Computes the features of pictures.
 pub(super) struct Eye {
     swin: Swin,
     projections: Vec<Projection>,
     /// How many maps the backbone has.
     maps: usize,
-    /// Added to the positions of a level's cells, [levels, size].
+    /// A learned vector for each level, [levels, size], which is added to the positions of its cells.
     level_embed: Tensor,
     size: usize,
     temperature: f32,
 }
 
-/// The cells of a level, rows from the top.
+/// The size of a level in cells. Its cells are in rows from the top.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Level {
     pub(super) height: usize,
     pub(super) width: usize,
 }
 
-/// What is computed once per picture.
+/// The features of a picture, before any text.
 pub(super) struct Features {
     /// The cells of all levels, the finest level first, [1, cells, size].
     pub(super) cells: Tensor,
@@ -52,7 +53,7 @@ struct Projection {
     layer: Linear,
     weight: Tensor,
     bias: Tensor,
-    /// Whether it looks at squares of cells, every second one, or at single cells.
+    /// Whether it is a 3 x 3 convolution with a stride of 2, or a layer for single cells.
     is_coarser: bool,
 }
 
@@ -75,7 +76,7 @@ impl Eye {
         let width = |map: usize| backbone.outputs.get(map).map_or(config.size, |&stage| backbone.width_of(stage));
         let projection = |at: usize| {
             let weights = model.sub("input_proj_vision").sub(at);
-            // The first coarser level is made of the backbone's last map itself, each further one of the level before.
+            // The first coarser level is computed from the backbone's last map, each further one from the level before.
             let inputs = if at == maps { width(maps - 1) } else { width(at) };
             Projection::load(&weights, inputs, config.size, at >= maps)
         };
@@ -89,7 +90,7 @@ impl Eye {
         })
     }
 
-    /// From pixels [1, 3, height, width].
+    /// The features of a picture with pixels [1, 3, height, width].
     pub(super) fn of(&self, pixels: &Tensor) -> Result<Features> {
         let maps: Vec<Tensor> = self.swin.of(pixels)?.iter().map(|map| map.squeeze(0)).collect::<Result<_>>()?;
         let mut levels: Vec<Tensor> = Vec::with_capacity(self.projections.len());
@@ -103,7 +104,7 @@ impl Eye {
         Ok(Features { cells: Tensor::cat(&cells, 0)?.unsqueeze(0)?, levels: sizes.collect::<Result<_>>()? })
     }
 
-    /// The positions of all cells, [1, cells, size].
+    /// The encoded positions of all cells, [1, cells, size].
     pub(super) fn positions(&self, levels: &[Level]) -> Result<Tensor> {
         let of_level = |(at, level): (usize, &Level)| {
             let sines = position::of_map(level.height, level.width, self.size, self.temperature);
@@ -130,7 +131,7 @@ impl Projection {
         })
     }
 
-    /// From a map [height, width, channels].
+    /// Projects a map [height, width, channels] to the width of the states.
     fn of(&self, map: &Tensor) -> Result<Tensor> {
         let map = if self.is_coarser { squares(map)? } else { map.clone() };
         let y = self.layer.of(&map)?;
@@ -140,8 +141,9 @@ impl Projection {
     }
 }
 
-/// The squares of a map [height, width, channels] around every second cell, their cells side by side:
-/// [(height + 1) / 2, (width + 1) / 2, 9 * channels]. Outside of the map there are zeros.
+/// The 3 x 3 squares of a map [height, width, channels] around every second cell, with the nine cells of a square side
+/// by side: [(height + 1) / 2, (width + 1) / 2, 9 * channels]. Outside of the map there are zeros. A linear layer of
+/// these is a convolution.
 fn squares(map: &Tensor) -> Result<Tensor> {
     let (height, width, channels) = map.dims3()?;
     let padded = map.pad_with_zeros(0, 1, 1)?.pad_with_zeros(1, 1, 1)?;
@@ -158,7 +160,7 @@ fn squares(map: &Tensor) -> Result<Tensor> {
     rows.contiguous()?.index_select(&taken, 0)?.reshape((down, across, KERNEL * KERNEL * channels))
 }
 
-/// Cells [cells, size] with mean 0 and variance 1 over all cells for each group of channels.
+/// Normalises cells [cells, size]: mean 0 and variance 1 for each group of channels, over all cells.
 fn grouped(x: &Tensor) -> Result<Tensor> {
     let (cells, size) = x.dims2()?;
     let each = size / GROUPS;
@@ -176,7 +178,7 @@ mod tests {
     use candle_core::Device;
 
     #[test]
-    fn squares_and_a_layer_are_a_convolution() {
+    fn squares_times_a_linear_layer_equal_a_convolution() {
         for (height, width) in [(5, 8), (6, 3), (1, 1)] {
             let numbers = |count: usize| (0..count).map(|at| (at * 7 % 11) as f32 - 5.0).collect::<Vec<_>>();
             let map = Tensor::from_vec(numbers(height * width * 2), (height, width, 2), &Device::Cpu).unwrap();

@@ -1,8 +1,9 @@
 //! Attention between a picture and a text, in both directions at once.
 //!
-//! A picture has thousands of cells and a prompt a few tokens. So the layers of the cells are folded into the tokens:
-//! a score is `(W v + b) . k = v . (Wᵀ k) + b . k`, what a cell takes from the tokens is projected before it is mixed,
-//! and what a token takes from the cells after it. The numbers are the same, for a tenth of the work.
+//! A picture has thousands of cells, and a prompt has a few tokens. So the linear layers of the cells are applied to
+//! the tokens instead. For a cell `v` and a key `k`, the score is `(W v + b) . k = v . (Wᵀ k) + b . k`: only `Wᵀ k`
+//! needs a product with the matrix, once per token. Values are treated alike: those of tokens are projected before
+//! cells mix them, and those of cells after tokens mixed them. The numbers are the same, for a tenth of the work.
 
 use super::config::Config;
 use crate::{
@@ -15,16 +16,16 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// The fusion of one layer of the encoder. What it adds is added to the *normalised* states.
+/// The fusion of one layer of the encoder. The residual is the *normalised* states, and not the states themselves.
 pub(super) struct Fusion {
     vision_norm: LayerNorm,
     text_norm: LayerNorm,
-    /// Keys and values of the tokens side by side.
+    /// Computes keys and values of the tokens, side by side.
     text: Linear,
     /// The layer of the cells' queries: [heads, head size, size] and [heads, head size, 1].
     query: Tensor,
     query_bias: Tensor,
-    /// The layer behind the cells' mixture times `vision_param`: [heads, head size, size] and [size].
+    /// The output layer of the cells, times `vision_param`: [heads, head size, size] and [size].
     out: Tensor,
     out_bias: Tensor,
     /// The layer of the cells' values: [heads, size, head size] and [heads, 1, head size].
@@ -85,13 +86,13 @@ impl Fusion {
         let rows = keys.matmul(&self.query)?.reshape((self.heads * tokens, size))?;
         let bias = keys.matmul(&self.query_bias)?.flatten_all()?;
         let scores = Linear::new(&rows, Some(bias))?.of(&v)?.reshape((cells, self.heads * tokens))?;
-        // A softmax over all cells, and what each token takes from them.
+        // A softmax over all cells, and the mix of cells for each token.
         let over_cells = softmax(&scores.t()?.contiguous()?)?;
         let pooled = times(&over_cells, &v.squeeze(0)?)?.reshape((self.heads, tokens, size))?;
         let pooled = pooled.matmul(&self.value)?.broadcast_add(&self.value_bias)?;
         let pooled = pooled.transpose(0, 1)?.reshape((1, tokens, width))?;
         let l = (l + self.text_out.of(&pooled)?.broadcast_mul(&self.text_share)?)?;
-        // A softmax over the tokens of each head, and what each cell takes from them.
+        // A softmax over the tokens of each head, and the mix of tokens for each cell.
         let over_tokens = softmax(&scores.reshape((cells * self.heads, tokens))?)?;
         let values = part(1)?.matmul(&self.out)?.reshape((self.heads * tokens, size))?;
         let mixed = Linear::new(&values.t()?.contiguous()?, Some(self.out_bias.clone()))?;

@@ -1,4 +1,4 @@
-//! What is read off the states: how well each fits each token, and boxes.
+//! The output layers: they turn states into scores for each token, and into movements of boxes.
 
 use super::{
     config::{Config, Family},
@@ -9,7 +9,7 @@ use candle_core::{DType, Result, Tensor};
 
 type Loaded<T> = std::result::Result<T, LocalError>;
 
-/// How well states fit tokens.
+/// Scores how well states fit tokens.
 pub(super) struct Contrast {
     scale: f64,
     bias: f64,
@@ -35,14 +35,14 @@ impl Contrast {
 
 /// The heads of the decoder's layers.
 pub(super) struct Heads {
-    /// For each layer, or one for all.
+    /// One for each layer of the decoder, or one for all.
     boxes: Vec<Perceptron>,
-    /// The last layer's.
+    /// Scores of the last layer's states.
     pub(super) contrast: Contrast,
 }
 
 impl Heads {
-    /// Of a whole checkpoint. Some have the heads twice, because the decoder holds them too; either are taken.
+    /// Reads the heads from a whole checkpoint. They are at the top of it, or within the decoder, or in both places.
     pub(super) fn load(all: &Scope<'_>, config: &Config) -> Loaded<Self> {
         let head = |name: &str, shares: bool, layer: usize, tensor: &str| {
             let layer = if shares { 0 } else { layer };

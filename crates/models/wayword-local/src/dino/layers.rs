@@ -1,4 +1,5 @@
-//! The small parts of which the layers are made.
+//! The parts that the encoder's and the decoder's layers have in common: attention, feed-forward layers, and a
+//! perceptron.
 
 use crate::{
     LocalError,
@@ -13,8 +14,8 @@ use candle_core::{Result, Tensor};
 
 type Loaded<T> = std::result::Result<T, LocalError>;
 
-/// The width of a part of wide layers. Rows that are much longer, and a power of 2 apart, would drive each other out of the
-/// cache.
+/// The width of a part of a wide layer. Rows that are much longer, at distances of a power of 2, would fall into the
+/// same lines of the processor's cache and push each other out.
 const PART: usize = 256;
 
 /// Multi-head attention with layers for queries, keys, values and the result.
@@ -29,7 +30,7 @@ pub(super) struct Mixing {
 
 /// A wide layer, an activation, a narrow layer, and a norm of the sum with the input.
 pub(super) struct Feed {
-    /// The two layers, in parts that go through the processor's cache one after another.
+    /// The two layers, split along the width between them into parts that fit into the processor's cache.
     parts: Vec<(Linear, Linear)>,
     /// The width between the two layers of a part.
     width: usize,
@@ -37,7 +38,7 @@ pub(super) struct Feed {
     activation: Activation,
 }
 
-/// Layers with a ReLU between them.
+/// Linear layers with a ReLU between them.
 pub(super) struct Perceptron(Vec<Linear>);
 
 impl Mixing {
@@ -53,7 +54,7 @@ impl Mixing {
         })
     }
 
-    /// States [1, queries, size] of queries, keys and values. `bias` is added to the scores.
+    /// The mix of values for each query, [1, queries, size]. `bias` is added to the scores.
     pub(super) fn of(&self, queries: &Tensor, keys: &Tensor, values: &Tensor, bias: Option<&Tensor>) -> Result<Tensor> {
         let (q, k, v) = (self.query.of(queries)?, self.key.of(keys)?, self.value.of(values)?);
         self.out.of(&Attention { heads: self.heads, scale: self.scale, bias }.of(&q, &k, &v)?)
@@ -61,7 +62,7 @@ impl Mixing {
 }
 
 impl Feed {
-    /// `fc1`, `fc2` and the norm of this name.
+    /// Reads the layers `fc1` and `fc2`, and the norm with the name `norm`.
     pub(super) fn load(
         weights: &Scope<'_>,
         norm: &str,
@@ -87,7 +88,7 @@ impl Feed {
         })
     }
 
-    /// Of x [1, rows, size].
+    /// The output for x [1, rows, size].
     pub(super) fn of(&self, x: &Tensor) -> Result<Tensor> {
         if is_ours(x) {
             return self.on_processor(x);
@@ -97,7 +98,8 @@ impl Feed {
         self.norm.of(&self.parts.iter().try_fold(x.clone(), part)?)
     }
 
-    /// By tiles of rows, so that what is between two layers stays in the processor's cache.
+    /// Takes a tile of rows at a time through both layers, so that the numbers between them stay in the processor's
+    /// cache.
     fn on_processor(&self, x: &Tensor) -> Result<Tensor> {
         let (_, count, size) = x.dims3()?;
         let mut y = vec![0.0; count * size];

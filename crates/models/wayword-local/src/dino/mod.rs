@@ -1,5 +1,9 @@
-//! The Grounding DINO family: finds things in pictures by phrases. MM Grounding DINO, LLMDet and Grounding DINO have one
-//! architecture with a few switches, which the configuration states.
+//! The Grounding DINO family: finds things in pictures by phrases. MM Grounding DINO, LLMDet and Grounding DINO have
+//! one architecture with a few switches, which are in the configuration.
+//!
+//! The order of the computation: `features` cuts a picture into cells, `text` reads the phrases, `encoder` lets both
+//! look at each other, `queries` picks the cells that fit the phrases best, and `decoder` refines a box for each of
+//! them.
 
 mod backbone;
 mod config;

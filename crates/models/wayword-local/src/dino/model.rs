@@ -1,4 +1,4 @@
-//! A whole model: from a picture and a prompt to what its queries see.
+//! A whole model: from a picture and a prompt to the scores and boxes of its queries.
 
 use super::{
     config::{Config, Family},
@@ -18,12 +18,13 @@ use wayword_core::{Image, Recent};
 /// The memory that the features of recent pictures may take, bytes.
 pub(crate) const KEPT_BYTES: usize = 256 << 20;
 
-/// Pixels of an edge of the patches that the backbone begins with.
+/// The edge of the patches into which the backbone cuts a picture, pixels.
 const PATCH_PX: usize = 4;
 
 /// MM Grounding DINO, LLMDet or Grounding DINO: finds things in pictures by phrases.
 ///
-/// What does not depend on the phrases is computed once per picture and kept for recent ones, in at most 256 MiB.
+/// The features of a picture do not depend on the phrases. They are computed once, and kept for recent pictures in at
+/// most 256 MiB.
 pub struct Dino {
     pub(super) name: String,
     pub(super) family: Family,
@@ -83,7 +84,7 @@ impl Dino {
         })
     }
 
-    /// Phrases as prompts.
+    /// Puts phrases into prompts, and computes the states of their texts.
     pub(super) fn prompts(&self, phrases: &[&str]) -> Result<Vec<(Prompt, Text)>, LocalError> {
         let read = |prompt: Prompt| {
             let text = self.reader.of(&prompt, &self.device.0);
@@ -92,7 +93,7 @@ impl Dino {
         prompt::prompts(&self.name, &self.tokenizer, phrases, self.longest)?.into_iter().map(read).collect()
     }
 
-    /// The features of a picture, which are kept.
+    /// The features of a picture: kept ones, or else new ones, which are then kept.
     pub(super) fn features(&self, image: &Image) -> Result<Arc<Features>, LocalError> {
         self.kept.get_or_make(digest(image), || {
             let pixels = self.shown.tensor(image, &self.device)?;
@@ -100,13 +101,13 @@ impl Dino {
         })
     }
 
-    /// What the queries see of a prompt in a picture.
+    /// The scores and boxes of the queries, for one prompt and one picture.
     pub(super) fn seen(&self, features: &Features, text: &Text) -> Result<Seen, LocalError> {
         self.look(features, text, |best| best).map_err(|error| self.wrong(&error))
     }
 
-    /// The same with other candidates, or in another order, than the best ones: their order is also that of the queries,
-    /// which begin differently, so that two equal candidates that change places change a result.
+    /// Like [`Dino::seen`], but `picked` may replace the best candidates, or reorder them. The order matters: each
+    /// query begins with its own learned state, so that two equal candidates that change places change the result.
     pub(super) fn look(
         &self,
         features: &Features,
@@ -120,7 +121,7 @@ impl Dino {
         self.decoder.of(self.chooser.boxes(&candidates, &picked)?, &cells, &read, levels)
     }
 
-    /// The states of cells and tokens behind the encoder.
+    /// The states of cells and tokens after the encoder.
     pub(super) fn encoded(&self, features: &Features, text: &Text) -> Computed<(Tensor, Tensor)> {
         let levels = &features.levels[..];
         let positions = self.eye.positions(levels)?;
@@ -130,8 +131,8 @@ impl Dino {
             .try_fold(begin, |(cells, states), layer| layer.of(&cells, &states, (&positions, levels), text))
     }
 
-    /// The network's own numbers for a picture and phrases of one prompt. `order` says which candidates become queries
-    /// instead of the best ones, and in which order: two equal candidates that change places change the result.
+    /// The network's own numbers for a picture and phrases of one prompt. `order` replaces the best candidates by
+    /// others: these cells become the queries, in this order.
     ///
     /// # Errors
     /// When the phrases are too many for one prompt, or the computation fails.
@@ -157,7 +158,7 @@ impl Dino {
     }
 }
 
-/// What tests look into.
+/// Intermediate results, for tests.
 #[cfg(test)]
 impl Dino {
     pub(super) fn pixels(&self, image: &Image) -> Tensor {

@@ -1,4 +1,4 @@
-//! Pictures as the family's models see them, as transformers' processor makes them with Pillow.
+//! Prepares pictures for the family's models. The numbers are those of transformers' processor with Pillow.
 
 use crate::{
     Device, LocalError, json,
@@ -47,7 +47,7 @@ enum Edges {
 pub(super) struct Shown {
     shortest: usize,
     longest: usize,
-    /// The model's number for each value of a byte, for each colour.
+    /// The model's input for each value of a byte, for each colour.
     numbers: [[f32; 256]; 3],
 }
 
@@ -85,7 +85,7 @@ impl Shown {
         Tensor::from_vec(numbers, (1, 3, height, width), &device.0).map_err(|error| wrong(error.to_string()))
     }
 
-    /// The height and width of a picture for the model, in Python's arithmetic.
+    /// The height and width to which a picture is resized, rounded as Python rounds them.
     fn size_of(&self, height: usize, width: usize) -> (usize, usize) {
         let (short, long) = (height.min(width), height.max(width));
         let (mut edge, mut exact) = (self.shortest, self.shortest as f64);
@@ -96,7 +96,7 @@ impl Shown {
         if short == edge {
             return (height, width);
         }
-        // A picture may be so narrow that nothing would be left of it.
+        // A very narrow picture would otherwise get an edge of 0 pixels.
         let edge = edge.max(1);
         let other = ((exact * long as f64 / short as f64) as usize).max(1);
         if width < height { (other, edge) } else { (edge, other) }
@@ -125,7 +125,7 @@ impl Config {
         Ok(Shown { shortest, longest, numbers: self.numbers()? })
     }
 
-    /// The model's number for each value of a byte, for each colour.
+    /// The model's input for each value of a byte, for each colour.
     fn numbers(&self) -> Result<[[f32; 256]; 3], String> {
         let factor = if self.do_rescale == Some(false) { 1.0 } else { self.rescale_factor.unwrap_or(1.0 / 255.0) };
         let (mean, deviation) = match self.do_normalize {

@@ -1,16 +1,16 @@
-//! Positions as sines and cosines of many wave lengths.
+//! Encodes positions as sines and cosines of many wave lengths, so that a linear layer can compare near and far ones.
 
 use std::f32::consts::TAU;
 
-/// The temperature of the positions of tokens and boxes.
+/// The ratio of the longest to the shortest wave length, for tokens and boxes.
 const TEMPERATURE: f32 = 10_000.0;
 
-/// The wave lengths of `count` numbers: two of each.
+/// The wave lengths of `count` numbers. Each is there twice: for a sine and a cosine.
 fn lengths(count: usize, temperature: f32) -> Vec<f32> {
     (0..count).map(|at| temperature.powf(2.0 * (at / 2) as f32 / count as f32)).collect()
 }
 
-/// Sine and cosine of a phase for each pair of wave lengths.
+/// Writes the sine and the cosine of a phase for each pair of wave lengths.
 fn waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
     for (at, (number, length)) in to.iter_mut().zip(lengths).enumerate() {
         let angle = phase / length;
@@ -18,7 +18,7 @@ fn waves(phase: f32, lengths: &[f32], to: &mut [f32]) {
     }
 }
 
-/// Of the cells of a map, row by row, `size` numbers each: first of the row, then of the column.
+/// The positions of the cells of a map, row by row, `size` numbers each: first those of the row, then of the column.
 pub(super) fn of_map(height: usize, width: usize, size: usize, temperature: f32) -> Vec<f32> {
     const EPSILON: f32 = 1e-6;
     let lengths = lengths(size / 2, temperature);
@@ -41,7 +41,7 @@ pub(super) fn of_map(height: usize, width: usize, size: usize, temperature: f32)
     all
 }
 
-/// Of the places of tokens, `size` numbers each.
+/// The positions of tokens within their phrases, `size` numbers each.
 pub(super) fn of_places(places: &[u32], size: usize) -> Vec<f32> {
     let lengths = lengths(size, TEMPERATURE);
     let mut all = vec![0.0; places.len() * size];
@@ -51,7 +51,7 @@ pub(super) fn of_places(places: &[u32], size: usize) -> Vec<f32> {
     all
 }
 
-/// Of boxes by their middle, width and height, `2 * size` numbers each, in the order y, x, width, height.
+/// The positions of boxes (middle, width and height), `2 * size` numbers each, in the order y, x, width, height.
 pub(super) fn of_boxes(boxes: &[[f32; 4]], size: usize) -> Vec<f32> {
     let each = size / 2;
     let lengths = lengths(each, TEMPERATURE);

@@ -1,8 +1,8 @@
-//! Phrases as the prompts of the family: `a red door. stairs.`, in lower case, each phrase closed by a dot.
+//! Puts phrases into the prompts of the family: `a red door. stairs.`, in lower case, each phrase closed by a dot.
 //!
 //! Phrases do not see each other in the text encoder: a token sees the tokens of its own phrase and the dot that closes
-//! it, and positions begin again behind each dot. They do meet in the picture's features, so the other phrases of a
-//! prompt change a phrase's scores.
+//! it, and positions count from 0 again after each dot. But all phrases change the picture's features, so the scores of
+//! a phrase depend on the other phrases of its prompt.
 
 use crate::{LocalError, text::Tokenizer};
 use candle_core::{Device, Result as Computed, Tensor};
@@ -15,11 +15,11 @@ const LAST: u32 = 102;
 const DOT: u32 = 1012;
 const QUESTION: u32 = 1029;
 
-/// Some phrases in one text.
+/// One text of one or more phrases.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Prompt {
     pub(super) ids: Vec<u32>,
-    /// For each phrase, by its place among all phrases, its tokens without the dot.
+    /// For each phrase its number among all phrases, and the range of its tokens, without the dot.
     pub(super) phrases: Vec<(usize, Range<usize>)>,
 }
 
@@ -35,7 +35,7 @@ impl Prompt {
         self.ids.push(DOT);
     }
 
-    /// How many tokens it has with another phrase of `more` tokens, its dot and the last token.
+    /// The length of the prompt, tokens, if a phrase of `more` tokens, its dot and the last token were added.
     fn with(&self, more: usize) -> usize {
         self.ids.len() + more + 2
     }
@@ -45,7 +45,7 @@ impl Prompt {
         self
     }
 
-    /// The position of each token within its phrase. That of the first and the last token is 0.
+    /// The position of each token within its phrase. The first and the last token of the prompt have position 0.
     pub(super) fn places(&self) -> Vec<u32> {
         let mut places = vec![0; self.ids.len()];
         for (_, tokens) in &self.phrases {
@@ -56,7 +56,7 @@ impl Prompt {
         places
     }
 
-    /// What is added to the scores of attention, [tokens, tokens]: 0 where a token sees another one, else -inf.
+    /// The mask [tokens, tokens] that is added to attention scores: 0 where a token sees another one, else -inf.
     pub(super) fn mask(&self, device: &Device) -> Computed<Tensor> {
         let count = self.ids.len();
         let mut phrase_of: Vec<usize> = (0..count).collect();
@@ -68,8 +68,9 @@ impl Prompt {
     }
 }
 
-/// All phrases in as few prompts as hold them in their order, with at most `longest` tokens each. A phrase without
-/// letters is in none. `name` is the model's, for errors. Dots and question marks within a phrase are left out, because they would cut it in two.
+/// Puts all phrases, in their order, into as few prompts as possible, with at most `longest` tokens each. A phrase
+/// without tokens is in none. Dots and question marks within a phrase are left out, because they would cut it in two.
+/// `name` is the model's name, for errors.
 ///
 /// # Errors
 /// When a phrase alone is too long.

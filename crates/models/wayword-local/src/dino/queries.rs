@@ -1,4 +1,7 @@
-//! The first stage: the cells that fit the text best become queries, each with a box.
+//! Chooses the queries: the cells that fit the text best, each with a first box.
+//!
+//! Every cell has an own box around its middle, with a size that depends on the level. The network moves this box a
+//! little.
 
 use super::{config::Config, features::Level, heads::Contrast, layers::Perceptron};
 use crate::{
@@ -15,7 +18,7 @@ const SHARE: f32 = 0.05;
 const LEAST: f32 = 0.01;
 const MOST: f32 = 0.99;
 
-/// Chooses cells.
+/// Chooses the cells that become queries.
 pub(super) struct Chooser {
     layer: Linear,
     norm: LayerNorm,
@@ -28,9 +31,9 @@ pub(super) struct Chooser {
 pub(super) struct Candidates {
     /// [1, cells, size].
     states: Tensor,
-    /// Each cell's own box before a sigmoid; infinite where it does not count.
+    /// The logits of each cell's own box; infinite for a cell that cannot be chosen for lack of a valid box.
     own: Vec<[f32; 4]>,
-    /// How well each cell fits its best token.
+    /// The logit of each cell's best token.
     pub(super) scores: Vec<f32>,
 }
 
@@ -46,7 +49,7 @@ impl Chooser {
         })
     }
 
-    /// All cells [1, cells, size] with how well they fit the text [1, tokens, size].
+    /// Scores all cells [1, cells, size] by how well they fit the text [1, tokens, size].
     pub(super) fn candidates(&self, cells: &Tensor, text: &Tensor, levels: &[Level]) -> Result<Candidates> {
         let own: Vec<[f32; 4]> = levels.iter().enumerate().flat_map(|(at, &level)| own_boxes(at, level)).collect();
         let counts = own.iter().map(|own| if own[0].is_finite() { 1.0_f32 } else { 0.0 }).collect();
@@ -57,7 +60,7 @@ impl Chooser {
         Ok(Candidates { states, own, scores })
     }
 
-    /// The best candidates, the best first. Of equals the first one comes first.
+    /// The cells with the best scores, the best first. Cells with equal scores stay in their order.
     pub(super) fn best(&self, candidates: &Candidates) -> Vec<u32> {
         let scores = &candidates.scores;
         let mut order: Vec<u32> = (0..scores.len() as u32).collect();
@@ -66,7 +69,7 @@ impl Chooser {
         order
     }
 
-    /// The boxes of some candidates: middle, width and height as shares of the picture.
+    /// The boxes of the picked cells: middle, width and height, as shares of the picture's width and height.
     pub(super) fn boxes(&self, candidates: &Candidates, picked: &[u32]) -> Result<Vec<[f32; 4]>> {
         let at = Tensor::from_slice(picked, picked.len(), candidates.states.device())?;
         let states = candidates.states.index_select(&at, 1)?;
@@ -79,7 +82,7 @@ impl Chooser {
     }
 }
 
-/// The boxes of a level's cells before a sigmoid.
+/// The logits of the own boxes of a level's cells.
 fn own_boxes(at: usize, level: Level) -> impl Iterator<Item = [f32; 4]> {
     let share = SHARE * (at as f32).exp2();
     level.middles().map(move |[x, y]| {
@@ -89,7 +92,7 @@ fn own_boxes(at: usize, level: Level) -> impl Iterator<Item = [f32; 4]> {
     })
 }
 
-/// Rows of four numbers of a tensor [1, rows, 4].
+/// The rows of a tensor [1, rows, 4], four numbers each.
 pub(super) fn rows(x: &Tensor) -> Result<Vec<[f32; 4]>> {
     let numbers: Vec<f32> = x.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1()?;
     Ok(numbers.chunks_exact(4).map(|row| [row[0], row[1], row[2], row[3]]).collect())

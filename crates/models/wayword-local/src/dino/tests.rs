@@ -82,7 +82,7 @@ fn every_stage_agrees_with_pytorch() {
 }
 
 #[test]
-fn phrases_become_as_few_prompts_as_hold_them() {
+fn phrases_are_put_into_as_few_prompts_as_possible() {
     let tokenizer = Tokenizer::load(&folder("dino")).unwrap();
     let made = prompts("hf/test/dino", &tokenizer, &["Red  door", " ?. ", "stairs. lamp", "sinks"], 9).unwrap();
     let expected = [

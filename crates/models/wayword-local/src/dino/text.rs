@@ -1,4 +1,5 @@
-//! The text of a prompt as states: BERT, and a projection to the width of the picture's states.
+//! Turns the text of a prompt into states: BERT reads it, and a projection brings its states to the width of the
+//! picture's states.
 
 use super::{config::Config, position, prompt::Prompt};
 use crate::{LocalError, bert::Encoder as BertEncoder, ops::Linear, weights::Scope};
@@ -11,13 +12,13 @@ pub(super) struct TextTower {
     size: usize,
 }
 
-/// A prompt's states, the same for all pictures.
+/// The states of a prompt's tokens. They are the same for all pictures.
 pub(super) struct Text {
     /// [1, tokens, size].
     pub(super) states: Tensor,
-    /// The sines of the tokens' places in their phrases, [1, tokens, size].
+    /// The encoded positions of the tokens in their phrases, [1, tokens, size].
     pub(super) places: Tensor,
-    /// Hides the other phrases, [1, 1, tokens, tokens].
+    /// The mask [1, 1, tokens, tokens] that hides other phrases from a token.
     pub(super) mask: Tensor,
 }
 

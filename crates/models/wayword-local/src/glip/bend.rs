@@ -1,8 +1,10 @@
-//! How a map is enlarged to the size of a finer one: bilinear, with the corners upon each other.
+//! Enlarges a map to the size of a finer one: bilinear, with corners aligned, so that the outermost positions of both
+//! maps coincide. Example: positions 0, 1, 2 become 0, 0.5, 1, 1.5, 2.
 
 use crate::ops::conv3::Map;
 
-/// The enlargement of one axis: for each new position, the position before it, the one behind it, and the share of that.
+/// The enlargement of one axis. For each new position: the old position before it, the old one after it, and the weight
+/// of the latter.
 pub(super) struct Axis(pub(super) Vec<(usize, usize, f32)>);
 
 impl Axis {
@@ -17,7 +19,7 @@ impl Axis {
         Self((0..to).map(one).collect())
     }
 
-    /// How much each old position counts in the mean of all new ones.
+    /// The weight of each old position in the mean of all new ones.
     fn shares(&self, from: usize) -> Vec<f64> {
         let mut shares = vec![0.0; from];
         for &(before, behind, share) in &self.0 {
@@ -40,7 +42,7 @@ impl Enlarged {
         Self { down: Axis::new(map.height, height), across: Axis::new(map.width, width), width: map.width }
     }
 
-    /// The four old positions of a new one, with their shares.
+    /// The four old positions around a new one, with their weights.
     pub(super) fn corners(&self, position: usize) -> [(usize, f32); 4] {
         let (above, below, down) = self.down.0[position / self.across.0.len()];
         let (left, right, across) = self.across.0[position % self.across.0.len()];
@@ -52,7 +54,7 @@ impl Enlarged {
         ]
     }
 
-    /// How much each old position counts in the mean of all new ones.
+    /// The weight of each old position in the mean of all new ones.
     pub(super) fn shares(&self, map: &Map) -> Vec<f32> {
         let (down, across) = (self.down.shares(map.height), self.across.shares(map.width));
         down.iter().flat_map(|down| across.iter().map(move |across| (down * across) as f32)).collect()
@@ -64,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_corners_lie_upon_each_other() {
+    fn enlargement_aligns_the_corners_of_both_maps() {
         assert_eq!(Axis::new(3, 5).0, [(0, 1, 0.0), (0, 1, 0.5), (1, 2, 0.0), (1, 2, 0.5), (2, 2, 0.0)]);
         assert_eq!(Axis::new(1, 2).0, [(0, 0, 0.0), (0, 0, 0.0)]);
         assert_eq!(Axis::new(4, 1).0, [(0, 1, 0.0)]);

@@ -1,21 +1,24 @@
-//! From what the head says to boxes with scores, as the original does it.
+//! Turns the head's outputs into boxes with scores, as the original implementation does.
+//!
+//! Each position of each level has an anchor, a square around it. The head moves and resizes the anchor. Of boxes that
+//! overlap too much, the best one for each phrase stays.
 
 use super::{head::Said, prompt::Prompt};
 use wayword_core::{Found, MOST_BOXES};
 
-/// The least probability of a phrase at a position.
+/// A phrase with a lower probability at a position gets no box there.
 const LEAST: f64 = 0.05;
 
-/// The most candidates of a level, pairs of position and phrase.
+/// The most candidates of a level. A candidate is a pair of position and phrase.
 const MOST_CANDIDATES: usize = 1000;
 
-/// Boxes of a phrase that share more than this with a better one are left out.
+/// A box that overlaps with a better one of the same phrase by more than this share of their union is left out.
 const MOST_OVERLAP: f64 = 0.6;
 
-/// The most that a box is larger than its anchor, as a logarithm.
+/// The logarithm of how many times larger than its anchor a box may be: ln(1000 / 16).
 const LARGEST: f64 = 4.135_166_556_742_356;
 
-/// Sizes of a picture as the model sees it, without padding, and of the picture itself: width and height.
+/// Width and height of a picture as the model gets it, without padding (`shown`), and of the picture itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sizes {
     pub(super) shown: (usize, usize),
@@ -80,7 +83,7 @@ fn candidates(level: usize, said: &Said, prompt: &Prompt, sizes: Sizes) -> Vec<C
     values.into_iter().map(candidate).collect()
 }
 
-/// The edges of a box at a column and row of a level, within the picture as the model sees it.
+/// The edges of the box at a column and row of a level, clamped to the picture as the model sees it.
 fn edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height): (usize, usize)) -> [f64; 4] {
     let (stride, side) = ((8_usize << level) as f64, (64_usize << level) as f64);
     let axis = |at: usize, moved: f32, grown: f32, length: usize| {
@@ -94,7 +97,8 @@ fn edges(level: usize, column: usize, row: usize, deltas: &[f32], (width, height
     [left, top, right, bottom]
 }
 
-/// The area that two boxes share, as a share of the area that they cover together, where edges are whole pixels.
+/// The area that two boxes share, divided by the area that they cover together. Both edges of a box count as its
+/// pixels.
 fn overlap(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     let length = |from: f64, to: f64| (to - from + 1.0).max(0.0);
     let area = |edges: &[f64; 4]| length(edges[0], edges[2]) * length(edges[1], edges[3]);
@@ -122,14 +126,15 @@ mod tests {
     const SIZES: Sizes = Sizes { shown: (100, 100), picture: (200, 100) };
 
     #[test]
-    fn a_box_is_its_anchor_where_nothing_is_moved_and_is_told_in_the_picture() {
+    fn an_unmoved_box_is_its_anchor_in_picture_pixels() {
         let found = boxes(&[said(vec![0.0], vec![0.0; 5])], &prompt(1), SIZES);
-        // The anchor of 64 pixels around 3.5 goes to 35, twice as far in the picture; probability and centreness are 0.5.
+        // The anchor of 64 pixels around 3.5 goes to 35, twice as far in the picture; probability and centreness are
+        // 0.5.
         assert_eq!(found, [[Found { box_px: [0.0, 0.0, 70.0, 35.0], score: 0.5 }]]);
     }
 
     #[test]
-    fn what_is_improbable_has_no_box() {
+    fn an_improbable_phrase_gets_no_box() {
         // 0.05 itself is not enough; centreness does not count here.
         let p = |p: f32| (p / (1.0 - p)).ln();
         let found = boxes(&[said(vec![p(0.0499), p(0.0501)], [0.0, 0.0, 0.0, 0.0, -20.0].to_vec())], &prompt(2), SIZES);
@@ -144,15 +149,15 @@ mod tests {
     }
 
     #[test]
-    fn of_boxes_upon_each_other_the_best_of_each_phrase_stays() {
-        // Two positions beside each other: the same box, moved by 8 pixels.
+    fn of_overlapping_boxes_the_best_of_each_phrase_stays() {
+        // Two neighbouring positions: the same box, moved by 8 pixels.
         let found = boxes(&[said(vec![0.0, 1.0, 1.0, 0.0], vec![0.0; 10])], &prompt(2), SIZES);
         assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1]);
         assert!(found[0][0].box_px[2] > found[1][0].box_px[2]);
     }
 
     #[test]
-    fn numbers_that_are_none_find_nothing() {
+    fn boxes_drop_numbers_that_are_not_finite() {
         let found = boxes(&[said(vec![f32::NAN], vec![f32::NAN; 5])], &prompt(1), SIZES);
         assert!(found[0].is_empty());
         let found = boxes(&[said(vec![f32::INFINITY], vec![f32::INFINITY; 5])], &prompt(1), SIZES);

@@ -1,4 +1,4 @@
-//! The sizes of GLIP. The original checkpoints come without any, so GLIP-T's are built in.
+//! The sizes of a GLIP. The original checkpoints have no configuration, so the sizes of GLIP-T are built in.
 
 use crate::{LocalError, bert, json, json::size_problem, swin::SwinConfig};
 use serde::Deserialize;
@@ -19,7 +19,7 @@ pub(super) struct HeadConfig {
     pub(super) width: usize,
     /// Groups of the norms.
     pub(super) groups: usize,
-    /// Rounds of fusion, text layer and convolutions.
+    /// Rounds of the head, each with a fusion, a text layer and convolutions.
     pub(super) rounds: usize,
     pub(super) fusion_heads: usize,
     /// Width of a head of the fusion.
@@ -59,7 +59,7 @@ impl Config {
         })
     }
 
-    /// GLIP-T's, and those of its variants A, B and C.
+    /// The sizes of GLIP-T and of its variants A, B and C.
     fn tiny() -> Self {
         let sizes = bert::Sizes {
             vocab_size: 30522,

@@ -1,4 +1,4 @@
-//! GLIP as a detector.
+//! A whole GLIP as a [`Detector`]: from a picture and phrases to boxes with scores.
 
 use super::{
     GlipFiles,
@@ -19,20 +19,21 @@ use candle_core::{Result as Computed, Tensor};
 use std::path::Path;
 use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
 
-/// The most memory for the features of pictures that were seen lately, bytes.
+/// The most memory for the features of recent pictures, bytes.
 pub(crate) const FEATURES_BYTES: usize = 512 << 20;
 
-/// Means and deviations of blue, green and red, of bytes.
+/// Means and standard deviations of the bytes of blue, green and red.
 const MEAN: [f32; 3] = [103.53, 116.28, 123.675];
 const DEVIATION: [f32; 3] = [57.375, 57.12, 58.395];
 
 /// The longest edge of a picture for the model, pixels.
 const LONGEST_EDGE: usize = 1333;
 
-/// GLIP. Its score is the root of the phrase's probability times the box's centreness, as the original gives it, and is 0
-/// where no box has a probability of more than 0.05.
+/// GLIP. The score of a box is the root of the phrase's probability times the box's centreness, as in the original.
+/// Boxes with a probability of 0.05 or less are left out.
 ///
-/// The features of pictures are kept, in at most 512 MiB of memory, so that further phrases cost the head alone.
+/// The features of pictures are kept, in at most 512 MiB of memory, so that further phrases only cost the time of the
+/// head.
 pub struct Glip {
     name: String,
     model: Model,
@@ -50,7 +51,7 @@ struct Seen {
 }
 
 impl Glip {
-    /// The short edge of a picture for the model, pixels, if nothing else is wanted.
+    /// The usual short edge of a picture for the model, pixels.
     pub const SHORT_EDGE_PX: usize = 800;
 
     /// Reads a checkpoint. `name` is the model's name. A shorter edge is faster and finds less.
@@ -89,8 +90,8 @@ impl Glip {
         })
     }
 
-    /// What the head says of a picture and one prompt of phrases, as plain numbers: for each position of all levels, the
-    /// logits of the tokens, and five numbers of its box. For comparisons with other implementations.
+    /// The head's outputs for a picture and one prompt of phrases: for each position of all levels, the logits of the
+    /// tokens, and five numbers of its box. For comparisons with other implementations.
     ///
     /// # Errors
     /// When the phrases are too many for one prompt, or the computation fails.
@@ -103,7 +104,7 @@ impl Glip {
         Ok((logits, said.iter().flat_map(|said| said.boxes.iter().copied()).collect()))
     }
 
-    /// For each phrase, where it is in a picture.
+    /// Finds phrases in a picture: for each phrase its boxes, the best first.
     ///
     /// # Errors
     /// When a phrase is too long, the picture has no pixels, or the computation fails.
@@ -147,7 +148,7 @@ impl Glip {
         states.collect::<Computed<_>>().map_err(|error| self.failed(&error))
     }
 
-    /// The features of a picture, kept or computed.
+    /// The features of a picture: kept ones, or else new ones, which are then kept.
     fn seen(&self, image: &Image) -> Result<std::sync::Arc<Seen>, LocalError> {
         self.seen.get_or_make(digest(image), || {
             let (pixels, size) = self.edges.tensor(image, &self.device)?;

@@ -1,4 +1,4 @@
-//! Where the files of a GLIP are. The checkpoint is one file, and the tokenizer comes from elsewhere.
+//! Finds the files of a GLIP. The checkpoint is one file, and the tokenizer comes from another repository.
 
 use super::{GLIP_LICENCE, GLIP_TOKENIZER};
 use crate::{
@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 
 const TOKENIZER: &str = "tokenizer.json";
 
-/// Where the files of a GLIP are.
+/// The paths of a GLIP's files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GlipFiles {
-    /// The checkpoint, in the form of the original. Sizes other than GLIP-T's are read from `config.json` beside it.
+    /// The checkpoint, in the form of the original. A `config.json` in the same folder gives sizes other than GLIP-T's.
     pub weights: PathBuf,
     /// The folder of BERT's `tokenizer.json`.
     pub tokenizer: PathBuf,
@@ -21,9 +21,9 @@ pub struct GlipFiles {
 }
 
 impl GlipFiles {
-    /// The files of a name like `hf/GLIPModel/GLIP:FILE.pth`, or `hf//FOLDER/FILE.pth`; what is missing is fetched. The
-    /// tokenizer is the one beside the checkpoint, if there is one, or else [`GLIP_TOKENIZER`]. What the makers do not say
-    /// of the licence is told once, to `progress`.
+    /// Finds the files for a name like `hf/GLIPModel/GLIP:FILE.pth`, or `hf//FOLDER/FILE.pth`, and fetches missing
+    /// ones. The tokenizer is the one in the checkpoint's folder, or else [`GLIP_TOKENIZER`]. `progress` gets the note
+    /// on the licence, [`GLIP_LICENCE`].
     ///
     /// # Errors
     /// When the name is not that of one file, or a file cannot be had or is not the one that it should be.

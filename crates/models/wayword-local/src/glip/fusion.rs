@@ -1,8 +1,8 @@
 //! The fusion of picture and text: each attends to the other.
 //!
-//! The projections of the picture's side are folded: they are applied to the few tokens instead of the many positions.
-//! For a head, (W v + b) . k = v . (Wᵀ k) + b . k; and since weights of attention sum to 1, a projection of what they mix
-//! is the mix of projections. Both are exact, and need a tenth of the multiplications.
+//! A picture has thousands of positions, and a text has a few tokens. So the linear layers of the picture's side are
+//! applied to the tokens instead. For a head, (W v + b) . k = v . (Wᵀ k) + b . k. And since attention weights sum to 1,
+//! values may be projected after they are mixed. Both are exact, and need a tenth of the multiplications.
 
 use super::config::HeadConfig;
 use crate::{
@@ -17,7 +17,7 @@ use candle_core::{D, Result, Tensor};
 
 const EPSILON: f64 = 1e-5;
 
-/// The most columns of scores at a time: of a few heads, if the text is long.
+/// The most columns of scores at a time. With a long text these are the columns of a few heads.
 const MOST_COLUMNS: usize = 512;
 
 pub(super) struct Fusion {
@@ -29,7 +29,7 @@ pub(super) struct Fusion {
     query: (Tensor, Tensor),
     key: Linear,
     values_l: Linear,
-    /// [heads, size, width] and [heads, 1, size]: of the picture's values, transposed for each head.
+    /// [heads, size, width] and [heads, 1, size]: the layer of the picture's values, transposed for each head.
     values_v: (Tensor, Tensor),
     /// [heads, size, width] and [width]: the output of each head, transposed.
     out_v: (Tensor, Tensor),
@@ -67,7 +67,7 @@ impl Fusion {
         })
     }
 
-    /// New features of positions [positions, width] and tokens [tokens, text].
+    /// The new features of positions [positions, width] and of tokens [tokens, text].
     pub(super) fn of(&self, vision: &Tensor, text: &Tensor) -> Result<(Tensor, Tensor)> {
         let (v, l) = (self.norm_v.of(vision)?, self.norm_l.of(text)?);
         let tokens = l.dim(0)?;
@@ -75,10 +75,11 @@ impl Fusion {
         let scale = 1.0 / (self.size as f64).sqrt();
         // [heads, tokens, size]
         let keys = (split(self.key.of(&l)?)? * scale)?;
-        // [heads, tokens, width]: what a position's features are multiplied with; [heads, tokens, 1]: what is added.
+        // The features of a position are multiplied with `folded` [heads, tokens, width], then `added` [heads, tokens,
+        // 1] is added.
         let folded = keys.matmul(&self.query.0)?;
         let added = keys.matmul(&self.query.1)?;
-        // What the tokens give, as large as it is to be added.
+        // The values of the tokens, already multiplied by the output layer and by `gamma_v`.
         let outputs = split(self.values_l.of(&l)?)?.matmul(&self.out_v.0)?.broadcast_mul(&self.gamma_v)?;
         let bias = (&self.out_v.1 * &self.gamma_v)?;
         // The residuals begin from the normed features.
@@ -89,7 +90,7 @@ impl Fusion {
             let heads = each.min(self.heads - begin);
             let of_heads = |x: &Tensor| x.narrow(0, begin, heads)?.flatten_to(1);
             let folded = of_heads(&folded)?;
-            // What is added to all positions alike does not change how they are weighed for a token.
+            // A number that is the same for all positions does not change a softmax over them, so `added` is left out.
             let to_text = softmax(&times(&folded, &v.t()?)?)?;
             pooled.push(times(&to_text, &v)?.reshape((heads, tokens, v.dim(1)?))?);
             let added = of_heads(&added)?.reshape((1, heads * tokens))?;

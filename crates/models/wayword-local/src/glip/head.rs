@@ -1,5 +1,5 @@
-//! The head: rounds of fusion, text layer and convolutions; then for each position how well each token fits, a box, and how
-//! central it is in that box.
+//! The head. First several rounds of fusion, text layer and convolutions; then, for each position, a logit for each
+//! token, a box, and the position's centreness, which is high in the middle of a thing.
 
 use super::{config::Config, fusion::Fusion, numbers, pyramid::LEVELS, tower::Tower};
 use crate::{
@@ -12,29 +12,29 @@ use candle_core::{DType, Result, Tensor};
 pub(super) struct Head {
     rounds: Vec<Round>,
     words: Linear,
-    /// What a token adds: by its state, and whatever it is.
+    /// The bias of a token's logits: a vector for the product with its state, and a constant.
     word_bias: (Tensor, f64),
-    /// What the products of position and token are divided by.
+    /// Divides the products of position and token.
     divisor: f64,
-    /// The four distances of a box, and how central the position is in it.
+    /// The layer for the four distances of a box, and for the centreness.
     boxes: Linear,
-    /// For each level, what its distances are multiplied with.
+    /// The factor for the distances of each level.
     scales: Vec<f32>,
 }
 
 struct Round {
-    /// Variant A has none.
+    /// The fusion and the text layer. Variant A has none.
     fusion: Option<(Fusion, bert::Layer)>,
     tower: Tower,
 }
 
-/// What the head says of a level's positions.
+/// The head's outputs for the positions of a level.
 pub(super) struct Said {
     pub(super) height: usize,
     pub(super) width: usize,
     /// [positions * tokens].
     pub(super) logits: Vec<f32>,
-    /// [positions * 5]: the four distances of a box, and how central the position is.
+    /// [positions * 5]: the four distances of a box, and the logit of the centreness.
     pub(super) boxes: Vec<f32>,
 }
 
@@ -75,7 +75,7 @@ impl Head {
         })
     }
 
-    /// From the levels of a picture and the states of a text [tokens, size].
+    /// Computes the outputs for the levels of a picture and the states of a text [tokens, size].
     pub(super) fn of(&self, levels: &[Map], text: &Tensor) -> Result<Vec<Said>> {
         let (mut levels, mut text) = (levels.to_vec(), text.clone());
         for round in &self.rounds {

@@ -1,4 +1,4 @@
-//! Means of a map's channels, which norms, weights and activations depend on.
+//! Means over a map for each channel. The norms, the weights of levels, and the activation depend on them.
 
 use crate::ops::{
     conv3::Map,
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 pub(super) struct Means {
     pub(super) plain: Vec<f64>,
     pub(super) square: Vec<f64>,
-    /// With a share for each position.
+    /// The mean with the given weight for each position.
     pub(super) shared: Vec<f64>,
 }
 
@@ -47,7 +47,7 @@ impl Means {
         })
     }
 
-    /// The sums of a tile: of numbers, of their squares, and of their shares.
+    /// The sums over a tile: of the numbers, of their squares, and of the weighted numbers, for each channel.
     fn of_tile(tile: usize, x: &[f32], width: usize, shares: Option<&[f32]>) -> Vec<f64> {
         let mut sums = vec![0.0_f32; 3 * width];
         let (plain, rest) = sums.split_at_mut(width);

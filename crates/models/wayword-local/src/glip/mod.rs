@@ -18,10 +18,10 @@ pub(crate) use detector::FEATURES_BYTES;
 pub use detector::Glip;
 pub use files::GlipFiles;
 
-/// The repository whose `tokenizer.json` GLIP's texts are cut with: the checkpoints come without one.
+/// The repository with the `tokenizer.json` for GLIP's texts. GLIP's checkpoints come without a tokenizer.
 pub const GLIP_TOKENIZER: &str = "hf/google-bert/bert-base-uncased";
 
-/// What is to be said once to whoever uses the weights.
+/// A note on the licence, which a user of the weights gets once.
 pub const GLIP_LICENCE: &str = "GLIP's code has the MIT licence, but its makers state no licence for the weights: find out whether you may use them for your purpose, and do not pass them on";
 
 use crate::{LocalError, weights::Scope};

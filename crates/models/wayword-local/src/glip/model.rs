@@ -1,4 +1,5 @@
-//! The network: pictures become levels of features, texts become states, and the head joins both.
+//! The whole network: the backbone turns a picture into levels of features, BERT turns a text into states, and the head
+//! joins both.
 
 use super::{
     config::Config,
@@ -34,7 +35,7 @@ impl Model {
         })
     }
 
-    /// The levels of a picture [1, 3, height, width], whose edges are multiples of 32.
+    /// The levels of a picture [1, 3, height, width]. Height and width are multiples of 32.
     pub(super) fn levels(&self, pixels: &Tensor) -> Result<Vec<Map>> {
         self.pyramid.of(&self.backbone.of(pixels)?)
     }
@@ -44,7 +45,7 @@ impl Model {
         self.text.of(&Tensor::new(ids, device)?.unsqueeze(0)?, None)?.squeeze(0)
     }
 
-    /// What the head says of levels and a text.
+    /// The head's outputs for the levels of a picture and the states of a text.
     pub(super) fn said(&self, levels: &[Map], text: &Tensor) -> Result<Vec<Said>> {
         self.head.of(levels, text)
     }

@@ -1,4 +1,4 @@
-//! Phrases as prompts: joined by dots, as many as a prompt can hold.
+//! Puts phrases into prompts: joined by dots, as many as fit into one prompt. Example: `sink. wooden door`.
 
 use crate::{LocalError, text::Tokenizer};
 
@@ -9,11 +9,11 @@ pub(super) const MOST_TOKENS: usize = 256;
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Prompt {
     pub(super) ids: Vec<u32>,
-    /// For each phrase, its number and its tokens. A phrase that has no token is in no prompt.
+    /// The number of each phrase, and the positions of its tokens. A phrase without tokens is in no prompt.
     pub(super) phrases: Vec<(usize, Vec<usize>)>,
 }
 
-/// A phrase as the original cleans it: without underscores and what is in brackets.
+/// Cleans a phrase as the original does: underscores become spaces, and words in brackets are left out.
 fn cleaned(phrase: &str) -> String {
     let mut depth = 0_usize;
     let kept = phrase.chars().filter(|&c| {
@@ -46,7 +46,7 @@ pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], most: usize) -> R
             let problem = format!("the phrase {:?} has more than the {most} tokens of a prompt", phrases[begin]);
             return Err(LocalError::Compute { model: "GLIP".to_owned(), problem });
         }
-        // The length is first guessed by doubling, because each try cuts the whole text into tokens.
+        // The end is searched by bisection, because each try cuts the whole text into tokens.
         let mut step = cleaned.len() - end;
         while step > 0 {
             let next = joined(tokenizer, &cleaned, begin, (end + step).min(cleaned.len()))?;
@@ -66,7 +66,7 @@ pub(super) fn prompts(tokenizer: &Tokenizer, phrases: &[&str], most: usize) -> R
     Ok(made)
 }
 
-/// One prompt of the phrases from `begin` to `end`.
+/// Joins the phrases from `begin` to `end` to one prompt, and finds the tokens of each.
 fn joined(tokenizer: &Tokenizer, phrases: &[String], begin: usize, end: usize) -> Result<Prompt, LocalError> {
     let text = phrases[begin..end].join(". ");
     let (ids, spans) = tokenizer.spans(&text)?;
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_goes_into_the_next_prompt() {
+    fn a_phrase_that_does_not_fit_goes_into_the_next_prompt() {
         // Each phrase has one token, and a dot between two.
         let phrases = ["sink", "lamp", "rug", "door", "chair"];
         for (most, sizes) in

@@ -1,4 +1,5 @@
-//! The feature pyramid: five levels of the same width from the backbone's three maps.
+//! The feature pyramid: five levels of the same width from the backbone's three maps. Each coarser map is added to the
+//! next finer one, so that fine levels also know the surroundings of a position.
 
 use crate::{
     LocalError,
@@ -10,19 +11,19 @@ use crate::{
 };
 use candle_core::{Result, Tensor};
 
-/// The strides of the levels begin with 8, and double.
+/// The number of levels. The first has a stride of 8 pixels, and each further one twice that of the level before.
 pub(super) const LEVELS: usize = 5;
 
 pub(super) struct Pyramid {
-    /// For the backbone's maps, the finest first.
+    /// The layers for the backbone's maps, the finest first.
     inner: Vec<Linear>,
     layer: Vec<Conv3>,
-    /// The two levels above.
+    /// The convolutions for the two coarsest levels.
     top: [Conv3; 2],
 }
 
 impl Pyramid {
-    /// From maps of these widths.
+    /// Reads a pyramid for maps of these widths.
     pub(super) fn load(weights: &Scope<'_>, from: [usize; 3], width: usize) -> std::result::Result<Self, LocalError> {
         let inner = |at: usize| {
             let part = weights.sub(format!("fpn_inner{}", at + 2));
@@ -39,8 +40,8 @@ impl Pyramid {
         })
     }
 
-    /// The levels, the finest first, from the backbone's maps [1, height, width, channels], each half as large as the one
-    /// before.
+    /// The levels, the finest first, from the backbone's maps [1, height, width, channels], each half as large as the
+    /// one before.
     pub(super) fn of(&self, maps: &[Tensor]) -> Result<Vec<Map>> {
         let mut levels: Vec<Map> = Vec::with_capacity(LEVELS);
         let mut above: Option<Tensor> = None;
@@ -63,7 +64,7 @@ impl Pyramid {
     }
 }
 
-/// Each position of x [height, width, channels] four times: [2 * height, 2 * width, channels].
+/// Doubles the edges of x [height, width, channels] by repeating each position four times.
 fn doubled(x: &Tensor) -> Result<Tensor> {
     let (height, width, channels) = x.dims3()?;
     let x = x.reshape((height, 1, width, 1, channels))?.broadcast_as((height, 2, width, 2, channels))?;

@@ -1,8 +1,11 @@
-//! The convolutions of a round: each level sees itself and its neighbours through deformed kernels, weighs what it saw, and
-//! passes it through an activation that depends on the whole map.
+//! The convolutions of a round of the head ("dynamic head", arXiv 2106.08322).
 //!
-//! Norms, weights and the activation are affine for each channel, so only their coefficients are computed one after
-//! another; the map itself is read twice: for its means, and to write the result.
+//! Each level is computed from itself and from the next finer and coarser level, through deformed kernels. The three
+//! results are weighted, added, and passed through an activation that depends on the whole map.
+//!
+//! Norms and weights multiply each channel by a number and add another one, and the activation is the larger of two
+//! lines. All these numbers follow from means over the map. So a map is read only twice: for its means, and to write
+//! the result.
 
 use super::{bend::Enlarged, config::HeadConfig, means::Means, numbers};
 use crate::{
@@ -19,7 +22,7 @@ use rayon::prelude::*;
 
 const EPSILON: f64 = 1e-5;
 
-/// Which convolution is for the level below, itself, and above.
+/// The index of the convolution by where its input comes from: the next coarser level, the same, or the next finer one.
 const ABOVE: usize = 0;
 const SAME: usize = 1;
 const BELOW: usize = 2;
@@ -27,34 +30,34 @@ const BELOW: usize = 2;
 pub(super) struct Tower {
     convs: [Normed; 3],
     bends: Conv3,
-    /// What a result's weight is made of: its channels' means.
+    /// The layer that computes the weight of a result from the means of its channels.
     weighs: (Vec<f32>, f32),
-    /// The two layers behind the activation's coefficients, rows of inputs and a bias.
+    /// The two layers that compute the activation's coefficients: rows of weights, and a bias.
     squeeze: (Vec<f32>, Vec<f32>),
     widen: (Vec<f32>, Vec<f32>),
     groups: usize,
     width: usize,
 }
 
-/// A convolution and the norm of groups of channels behind it.
+/// A convolution, and the norm over groups of channels that follows it.
 struct Normed {
     conv: Conv3,
     weight: Vec<f32>,
     bias: Vec<f32>,
 }
 
-/// What one convolution gives for a level.
+/// The result of one convolution, with the coefficients of its norm.
 struct Seen {
     map: Map,
-    /// How it becomes as large as the level.
+    /// How the map is enlarged to the size of the level, if it comes from a coarser one.
     enlarged: Option<Enlarged>,
-    /// For each channel: what a number is multiplied with, what is then added, and the mean of the results.
+    /// For each channel: the norm's factor, the number that it adds, and the mean after the norm.
     scale: Vec<f32>,
     shift: Vec<f32>,
     mean: Vec<f32>,
 }
 
-/// The activation's coefficients for each channel: the larger of two lines, slope and height each.
+/// The activation's coefficients for each channel: slope and height of two lines. The larger of both lines counts.
 struct Lines([Vec<f32>; 4]);
 
 impl Tower {
@@ -85,7 +88,7 @@ impl Tower {
         })
     }
 
-    /// New levels from levels, the finest first.
+    /// Computes the next levels from levels, the finest first.
     pub(super) fn of(&self, levels: &[Map]) -> Result<Vec<Map>> {
         (0..levels.len()).map(|at| self.level(levels, at)).collect()
     }
@@ -100,7 +103,7 @@ impl Tower {
         if let Some(coarser) = levels.get(at + 1) {
             seen.push(self.see(ABOVE, coarser, 1, &bends, Some(level))?);
         }
-        // The mean of the results, each with its weight: a sum of maps, each with a slope, and a height.
+        // The weighted mean of the results. It is a sum of maps, each with a factor, plus one number for each channel.
         let mut height = vec![0.0; self.width];
         let mut mean = vec![0.0; self.width];
         let count = seen.len() as f32;
@@ -119,7 +122,7 @@ impl Tower {
         Ok(Map { x, ..*level })
     }
 
-    /// A convolution's result, and what its norm does to it.
+    /// Convolves a map, and computes the coefficients of the norm that follows.
     fn see(&self, which: usize, map: &Map, stride: usize, bends: &Bends, like: Option<&Map>) -> Result<Seen> {
         let Normed { conv, weight, bias } = &self.convs[which];
         let map = conv.deformed(map, stride, bends)?;
@@ -142,13 +145,13 @@ impl Tower {
         Ok(Seen { map, enlarged, scale, shift, mean })
     }
 
-    /// The weight of a result by its channels' means.
+    /// The weight of a result, from the means of its channels.
     fn weight(&self, mean: &[f32]) -> f32 {
         let sum: f32 = self.weighs.0.iter().zip(mean).map(|(weight, mean)| weight * mean).sum();
         hard_sigmoid((sum + self.weighs.1).max(0.0))
     }
 
-    /// The activation's coefficients by the channels' means.
+    /// The activation's coefficients, from the means of the channels.
     fn lines(&self, mean: &[f32]) -> Lines {
         let layer = |(weight, bias): &(Vec<f32>, Vec<f32>), x: &[f32]| -> Vec<f32> {
             let row = |(row, bias): (&[f32], &f32)| row.iter().zip(x).map(|(a, b)| a * b).sum::<f32>() + bias;
@@ -162,7 +165,7 @@ impl Tower {
         Lines([part(0, 2.0, 1.0), part(1, 1.0, 0.0), part(2, 2.0, 0.0), part(3, 1.0, 0.0)])
     }
 
-    /// The sum of what was seen, through the activation, in one pass.
+    /// The sum of the results after the activation, in one pass on the processor.
     fn joined(&self, seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Result<Tensor> {
         let width = self.width;
         let mut y = vec![0.0; level.count() * width];
@@ -199,7 +202,7 @@ impl Tower {
     }
 }
 
-/// The sum of what was seen, through the activation, by candle's operators.
+/// The sum of the results after the activation, with candle's operators.
 fn on_device(seen: &[Seen], height: &[f32], lines: &Lines, level: &Map) -> Result<Tensor> {
     let (device, dtype) = (level.x.device(), level.x.dtype());
     let row = |numbers: &[f32]| Tensor::from_slice(numbers, (1, numbers.len()), device)?.to_dtype(dtype);

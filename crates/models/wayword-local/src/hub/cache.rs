@@ -1,4 +1,4 @@
-//! The cache on disk, with the folders of the hub's own client, and the hashes that name its files.
+//! The cache on disk: its folders, which are those of the hub's own client, and the hashes that name its files.
 
 use super::name::{OnHub, is_part};
 use crate::LocalError;
@@ -12,10 +12,10 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// How many levels of folders are searched. Snapshots and references have few.
+/// The most levels of folders that are searched. Snapshots and references have few.
 const DEEPEST: usize = 8;
 
-/// The hash of a commit: 40 hex digits in lower case. Nothing else is allowed, because it names a folder.
+/// The hash of a commit: 40 hex digits in lower case. It is checked strictly, because it names a folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Commit(String);
 
@@ -29,17 +29,17 @@ impl Commit {
     }
 }
 
-/// The expected hash of a file. As text it names the blob.
+/// The hash that a file must have. As text it is the name of the file's blob.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum BlobHash {
-    /// For large files.
+    /// The hub's hash of a large file.
     Sha256(String),
-    /// For small files: git's hash of a blob.
+    /// The hub's hash of a small file: git's hash of a blob.
     Git(String),
 }
 
 impl BlobHash {
-    /// Reads an etag. `None` if it is not one of the hub's hashes, because a file that cannot be checked is not used.
+    /// Reads the hash from an etag. `None` if the etag is not a hash of the hub; such a file could not be checked.
     pub(super) fn from_etag(etag: &str) -> Option<Self> {
         let hash = etag.strip_prefix("W/").unwrap_or(etag).trim_matches('"');
         if is_hex(hash, 64) {
@@ -104,12 +104,12 @@ impl RepoFolder {
         self.root.join("blobs").join(hash.as_str())
     }
 
-    /// The commit that a revision pointed to when it was fetched.
+    /// The commit that a revision (a branch, tag or commit) pointed to when it was fetched.
     pub(super) fn commit_of(&self, revision: &str) -> Option<Commit> {
         Commit::parse(revision).or_else(|| read_ref(&self.root.join("refs").join(revision)))
     }
 
-    /// Writes down the commit that a revision points to.
+    /// Records the commit that a revision points to.
     pub(super) fn keep_ref(&self, revision: &str, commit: &Commit) -> Result<(), LocalError> {
         if self.commit_of(revision).as_ref() == Some(commit) {
             return Ok(());
@@ -127,7 +127,7 @@ impl RepoFolder {
         self.absent(commit, file).exists()
     }
 
-    /// Writes down that a commit lacks a file, so that the hub is not asked again.
+    /// Records that a commit lacks a file, so that the hub is not asked again.
     pub(super) fn keep_absent(&self, commit: &Commit, file: &str) -> Result<(), LocalError> {
         let path = self.absent(commit, file);
         make_parent(&path)?;
@@ -174,13 +174,13 @@ impl RepoFolder {
         }
         make_parent(&path)?;
         let io = |error| LocalError::io(&path, "write", error);
-        // Made beside the path and moved there, because another process may make the same link at the same time.
+        // The link is made under another name and then moved, because another process may make it at the same time.
         let fresh = fresh_beside(&path);
         // From snapshots/COMMIT/FILE, the link goes up two folders, and one more for each folder in FILE.
         let up = "../".repeat(2 + file.matches('/').count());
         let links = || symlink(Path::new(&format!("{up}blobs/{}", hash.as_str())), &fresh).is_ok() && fresh.is_file();
         if !(symlinks && links()) {
-            // Otherwise the copy would be written through the broken link.
+            // A broken link is removed first, because the copy would be written through it.
             let _ = fs::remove_file(&fresh);
             fs::copy(&blob, &fresh).map_err(io)?;
         }
@@ -196,13 +196,13 @@ fn read_ref(path: &Path) -> Option<Commit> {
     Commit::parse(text.trim())
 }
 
-/// A path beside another one that no other thread or process uses.
+/// A new path in the same folder, which no other thread or process uses.
 fn fresh_beside(path: &Path) -> PathBuf {
     static MADE: AtomicU64 = AtomicU64::new(0);
     beside(path, &format!(".{}-{}.tmp", std::process::id(), MADE.fetch_add(1, Ordering::Relaxed)))
 }
 
-/// The same path with something added to its name.
+/// The path with `end` added to its file name.
 pub(super) fn beside(path: &Path, end: &str) -> PathBuf {
     let mut text = path.as_os_str().to_owned();
     text.push(end);

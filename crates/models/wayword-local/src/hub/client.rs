@@ -1,4 +1,7 @@
-//! Requests to the hub, with its redirects.
+//! Sends requests to the hub, and follows its redirects.
+//!
+//! For a large file the hub answers with a redirect to a storage server. Commit, hash and size are in the headers of
+//! the hub's redirects, and not in the storage server's answer, so they are collected along the way.
 
 use super::{
     HubConfig,
@@ -24,7 +27,7 @@ const CONNECT: Duration = Duration::from_secs(10);
 /// Longest silence of a server. There is no limit on a whole download, because a model may be large.
 const SILENCE: Duration = Duration::from_secs(60);
 
-/// The characters that are encoded in one segment of a path: all but those that any address may contain.
+/// The characters that are percent-encoded in one segment of a path: all except those that any address may contain.
 const IN_A_SEGMENT: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~');
 
 /// The hub's connections.
@@ -40,11 +43,11 @@ pub(super) struct Client {
 #[derive(Debug)]
 pub(super) enum Answer {
     There(Facts),
-    /// The model has no such file at this commit, if the hub names one.
+    /// The model lacks the file at this commit, if the hub names a commit.
     Absent(Option<Commit>),
 }
 
-/// What is known of a file before it is fetched.
+/// The facts about a file before it is fetched.
 #[derive(Debug)]
 pub(super) struct Facts {
     pub(super) commit: Commit,
@@ -53,7 +56,7 @@ pub(super) struct Facts {
     pub(super) size: Option<u64>,
 }
 
-/// What the answers on the way to a file have said so far.
+/// The facts that the answers along a chain of redirects have given so far.
 #[derive(Default)]
 struct Heard {
     commit: Option<Commit>,
@@ -80,9 +83,9 @@ impl Client {
             .timeout_recv_response(Some(SILENCE))
             .timeout_per_read(Some(SILENCE))
             .user_agent(concat!("wayword/", env!("CARGO_PKG_VERSION")))
-            // Without compression, because the hash is that of the file itself.
+            // No compression, because the hash is that of the uncompressed file.
             .accept_encoding("identity")
-            // A proxy cannot reach this machine's own servers.
+            // A proxy cannot reach a server on this machine.
             .proxy(if endpoint.is_loopback() { None } else { Proxy::try_from_env() })
             .build();
         // The token is not sent over plain http, except to this machine.
@@ -133,8 +136,8 @@ impl Client {
         Ok(Answer::There(Facts { commit, hash, size }))
     }
 
-    /// Asks for the bytes at an address, from byte `from` on. A server that cannot do this sends all bytes, so the
-    /// first byte's position is returned too.
+    /// Requests the bytes at an address, from byte `from` on. Also returns the position of the first byte that comes,
+    /// because a server that cannot send a part sends all bytes.
     ///
     /// # Errors
     /// When the request is refused or not answered.
@@ -145,7 +148,7 @@ impl Client {
             match response.status().as_u16() {
                 200 => from = 0,
                 206 if begins_at(response.headers()) == Some(from) => {}
-                // Another part than requested, or none: from the beginning.
+                // The server sends another part than requested, or none: request all bytes.
                 206 | 416 if from > 0 => {
                     from = 0;
                     continue;
@@ -198,8 +201,8 @@ impl Client {
 }
 
 impl Heard {
-    /// Reads headers, and returns whether all facts are known. The storage behind the last redirect does not know the
-    /// commit, and its address may be signed for GET requests alone.
+    /// Reads the headers of an answer, and returns whether all facts are known. Then the last redirect is not followed:
+    /// the storage server does not know the commit, and its address may be signed for GET requests only.
     fn hear(&mut self, headers: &HeaderMap) -> bool {
         if self.commit.is_none() {
             self.commit = text(headers, "x-repo-commit").and_then(Commit::parse);
@@ -232,7 +235,7 @@ impl Address {
     /// Reads an address.
     ///
     /// # Errors
-    /// Says what is wrong, and leaves out the address, because it may contain a password or a signature.
+    /// The problem with the address. It does not repeat the address, which may contain a password or a signature.
     pub(super) fn parse(text: &str) -> Result<Self, &'static str> {
         let uri: Uri = text.parse().map_err(|_| "it is not a web address")?;
         let authority = uri.authority().ok_or("it has no host")?;
@@ -245,7 +248,7 @@ impl Address {
         Ok(Self { text: text.to_owned(), uri })
     }
 
-    /// The hub's address, to which a file's path is added.
+    /// Reads the hub's address, to which the path of a file is added.
     pub(super) fn endpoint(text: &str) -> Result<Self, &'static str> {
         let address = Self::parse(text.trim().trim_end_matches('/'))?;
         if address.uri.query().is_some() || text.contains('#') {
@@ -262,7 +265,7 @@ impl Address {
         format!("{}/{}/{}/resolve/{revision}/{file}", self.text, model.org, model.name)
     }
 
-    /// The address that a redirect leads to.
+    /// The address that a redirect leads to. A redirect from https to http is refused.
     pub(super) fn redirected(&self, location: &str) -> Result<Self, &'static str> {
         let (scheme, host, port) = self.origin();
         let to = if location.starts_with("//") {
@@ -279,19 +282,19 @@ impl Address {
         self.uri.host().unwrap_or_default()
     }
 
-    /// Scheme, host and port: the server.
+    /// Scheme, host and port, which together identify a server.
     pub(super) fn origin(&self) -> (&str, String, u16) {
         let scheme = self.uri.scheme_str().unwrap_or_default();
         let port = self.uri.port_u16().unwrap_or(if self.is_plain() { 80 } else { 443 });
         (scheme, self.host().to_ascii_lowercase(), port)
     }
 
-    /// Whether others on the network can read what is sent.
+    /// Whether requests go over plain http, so that others on the network can read them.
     fn is_plain(&self) -> bool {
         self.uri.scheme_str() != Some("https")
     }
 
-    /// Whether it is this machine.
+    /// Whether the host is this machine.
     fn is_loopback(&self) -> bool {
         let bare = self.host().trim_start_matches('[').trim_end_matches(']');
         bare.eq_ignore_ascii_case("localhost") || bare.parse().is_ok_and(|address: IpAddr| address.is_loopback())

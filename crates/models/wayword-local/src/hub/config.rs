@@ -1,4 +1,4 @@
-//! The settings of the cache and the hub.
+//! The settings of the cache and the hub, and how they are read from environment variables.
 
 use crate::LocalError;
 use std::{
@@ -10,7 +10,7 @@ use std::{
 
 const ENDPOINT: &str = "https://huggingface.co";
 
-/// Wait before a second try.
+/// The wait before a second attempt.
 const FIRST_WAIT: Duration = Duration::from_millis(300);
 
 /// The settings of the cache and the hub.
@@ -20,23 +20,23 @@ pub struct HubConfig {
     pub cache: PathBuf,
     /// The hub's address.
     pub endpoint: String,
-    /// The network is not used.
+    /// Whether the network is left alone, and only files on this machine are used.
     pub offline: bool,
-    /// Snapshots contain links to the blobs, not copies.
+    /// Whether snapshots contain links to the blobs, and not copies.
     pub symlinks: bool,
-    /// The SHA-256 that a checkpoint of the form `hf/ORG/NAME:FILE.pth` must have. Without it, it is the published one, or
-    /// that of the first use.
+    /// The SHA-256 that a checkpoint of the form `hf/ORG/NAME:FILE.pth` must have. If it is not set, the file must have
+    /// the published hash, or the one that it had when it was first used.
     pub trust: Option<String>,
     pub(super) token: Option<Token>,
     pub(super) first_wait: Duration,
 }
 
-/// A token. It is never shown.
+/// A token for the hub. Debug output shows `***` instead of it.
 #[derive(Clone)]
 pub(super) struct Token(String);
 
 impl HubConfig {
-    /// A cache, and the public hub without a token.
+    /// Settings with this cache, and the public hub without a token.
     #[must_use]
     pub fn new(cache: PathBuf) -> Self {
         Self {
@@ -74,7 +74,7 @@ impl HubConfig {
             let text = variable(name)?.into_string().ok()?.trim().to_owned();
             (!text.is_empty()).then_some(text)
         };
-        // The values that the hub's own client takes as yes.
+        // The values that count as yes for the hub's own client.
         let yes = |value: String| ["1", "on", "yes", "true"].iter().any(|yes| value.eq_ignore_ascii_case(yes));
         let is_set = |name: &str| text(name).is_some_and(yes);
         let usual = || Some(path("XDG_CACHE_HOME").or_else(|| Some(home?.join(".cache")))?.join("huggingface"));
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_token_is_shown_to_nobody() {
+    fn debug_output_and_errors_hide_the_token() {
         let config = read(&[("HF_TOKEN", " hf_0123456789\n"), ("HF_ENDPOINT", "https://mirror.example")]);
         assert_eq!(config.token.as_ref().unwrap().header(), "Bearer hf_0123456789");
         let shown = format!("{config:?}");

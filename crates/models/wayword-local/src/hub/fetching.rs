@@ -1,4 +1,4 @@
-//! Fetches the files that are not on this machine. A download continues where an earlier one ended.
+//! Downloads the files that are not on this machine. A download continues where an earlier one ended.
 
 use super::{
     cache::{Commit, RepoFolder, beside, make_parent},
@@ -14,11 +14,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The most bytes of a file whose size the hub does not give. It gives the size of every large file.
+/// The most bytes of a file for which the hub gives no size. It gives the size of every large file.
 const MOST_UNANNOUNCED: u64 = 64 << 20;
 
-/// How many bytes have to arrive before earlier failures are forgotten. So the program gives up on a server that sends
-/// only a few bytes each time.
+/// The number of bytes that must arrive before earlier failures are forgotten. The limit makes the program give up on a
+/// server that sends only a few bytes each time.
 const A_GOOD_PIECE: u64 = 1 << 20;
 
 /// Receives the progress of downloads.
@@ -26,12 +26,12 @@ pub trait Progress {
     /// `done` bytes of a file have arrived, of `total` if the hub has given the size.
     fn bytes(&self, file: &str, done: u64, total: Option<u64>);
 
-    /// Another process fetches this file, and this one waits for it.
+    /// Called when another process fetches this file, and this one waits for it.
     fn waiting(&self, file: &str) {
         let _ = file;
     }
 
-    /// Something that the user should know of a file.
+    /// Receives a note that the user should read, such as one on a licence.
     fn told(&self, note: &str) {
         let _ = note;
     }
@@ -42,7 +42,7 @@ impl Progress for () {
     fn bytes(&self, _: &str, _: u64, _: Option<u64>) {}
 }
 
-/// The files of one commit. If none is known, it is the first that the hub names.
+/// Downloads files of one commit. If the commit is not known, it is the first one that the hub names.
 pub(super) struct Fetching<'a> {
     pub(super) client: &'a Client,
     pub(super) model: &'a OnHub,
@@ -53,8 +53,8 @@ pub(super) struct Fetching<'a> {
 }
 
 impl Fetching<'_> {
-    /// Returns the commit, and records it as the revision's commit. This happens only when all files are there, so that
-    /// after a fetch that is cut off the older snapshot stays in use.
+    /// Returns the commit, and records it as the revision's commit. It is called when all files are there, so that the
+    /// older snapshot stays in use after an interrupted download.
     pub(super) fn finish(self) -> Result<String, LocalError> {
         let Some(commit) = &self.commit else {
             return Err(LocalError::download(self.address(""), "no file was requested", TRY_LATER));
@@ -73,7 +73,7 @@ impl Fetching<'_> {
         self.client.address(self.model, self.revision(), file)
     }
 
-    /// Checks that all files are of one commit.
+    /// Checks that a file is of the same commit as the files before it.
     fn agree(&mut self, file: &str, commit: &Commit) -> Result<(), LocalError> {
         if *self.commit.get_or_insert_with(|| commit.clone()) == *commit {
             return Ok(());
@@ -82,7 +82,7 @@ impl Fetching<'_> {
         Err(LocalError::download(self.address(file), problem, TRY_LATER))
     }
 
-    /// Puts the blob into the cache, if it is not there.
+    /// Downloads a blob into the cache, if it is not there.
     fn fetch(&self, file: &str, facts: &Facts) -> Result<(), LocalError> {
         let blob = self.repo.blob(&facts.hash);
         if blob.is_file() {
@@ -112,7 +112,7 @@ impl Fetching<'_> {
         fs::rename(&part, &blob).map_err(|error| LocalError::io(&blob, "write", error))
     }
 
-    /// Fetches until all bytes are there. Returns whether some of them were there before.
+    /// Downloads until all bytes are there. Returns whether some of them were there before.
     fn whole(&self, file: &str, size: Option<u64>, part: &Path, patience: &mut Patience) -> Result<bool, LocalError> {
         let io = |error| LocalError::io(part, "write", error);
         let mut out = OpenOptions::new().create(true).append(true).open(part).map_err(io)?;
@@ -136,7 +136,7 @@ impl Fetching<'_> {
         Ok(resumed)
     }
 
-    /// Fetches the bytes that one connection gives.
+    /// Downloads the bytes that one connection delivers.
     fn piece(&self, file: &str, size: Option<u64>, out: &mut File, part: &Path) -> Result<(), Trouble> {
         let io = |error| Trouble::Lasting(LocalError::io(part, "write", error));
         let (address, there) = (self.address(file), out.seek(SeekFrom::End(0)).map_err(io)?);

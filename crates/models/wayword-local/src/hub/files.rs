@@ -1,4 +1,4 @@
-//! A model's files: which ones are needed, which ones are on this machine, and a hash that identifies them.
+//! The files of a model: which are needed, which are on this machine, and a hash that identifies them.
 
 use super::ModelName;
 use crate::{LocalError, weights};
@@ -14,7 +14,7 @@ const INDEX: &str = "model.safetensors.index.json";
 const TOKENIZER: &str = "tokenizer.json";
 const PICKLED: &str = "pytorch_model.bin";
 
-/// Files that a model of this program reads if they exist.
+/// Files that the models of this crate read if they exist.
 const READ_WHERE_THERE: [&str; 8] = [
     TOKENIZER,
     "tokenizer_config.json",
@@ -26,9 +26,9 @@ const READ_WHERE_THERE: [&str; 8] = [
     "modules.json",
 ];
 
-/// Files up to this length, bytes, count as a whole for a model's identity.
+/// Files up to this length, bytes, are hashed as a whole for a model's identity. Longer ones are sampled.
 const COUNTS_WHOLE: u64 = 1 << 20;
-/// Number of samples of a longer file, from its beginning to its end.
+/// The number of samples of a longer file, evenly from its beginning to its end.
 const SAMPLES: u64 = 256;
 /// Bytes of each sample.
 const SAMPLE: u64 = 4096;
@@ -41,7 +41,7 @@ pub struct Needs {
     optional: Vec<&'static str>,
 }
 
-/// Access to a model's files.
+/// Access to the files of a model, on disk or on the hub.
 pub(super) trait Files {
     /// The folder that the files are in.
     fn folder(&self) -> PathBuf;
@@ -49,14 +49,14 @@ pub(super) trait Files {
     /// The path of a file, if it is on this machine.
     fn here(&self, file: &str) -> Option<PathBuf>;
 
-    /// The path of a file, which is fetched if necessary; `None` if the model has no such file.
+    /// The path of a file, which is fetched if necessary. `None` if the model lacks the file.
     fn get(&mut self, file: &str) -> Result<Option<PathBuf>, LocalError>;
 
     /// The error for a needed file that does not exist.
     fn missing(&self, file: &str, what: &'static str) -> LocalError;
 }
 
-/// The files that were found or fetched.
+/// The files of a model after they were found or fetched.
 #[derive(Debug)]
 pub(super) struct Gathered {
     pub(super) folder: PathBuf,
@@ -89,7 +89,7 @@ impl Needs {
         self
     }
 
-    /// The files that a model of any kind needs.
+    /// The files that a model of any architecture needs.
     #[must_use]
     pub fn of_any(name: &ModelName) -> Self {
         if name.is_file() {
@@ -98,18 +98,19 @@ impl Needs {
         Self::default().weights().required(&["config.json"]).optional(&READ_WHERE_THERE)
     }
 
-    /// The tokenizer alone: for who needs a model's words and not the model.
+    /// The tokenizer alone, without the model's weights.
     #[must_use]
     pub fn tokenizer() -> Self {
         Self::default().required(&[TOKENIZER])
     }
 
-    /// The arguments of `wayword models fetch`, before the name, that fetch these files and not many more.
+    /// The flags for `wayword models fetch` that make it fetch these files and not many more. They come before the
+    /// name.
     pub(super) fn flags(&self) -> &'static str {
         if *self == Self::tokenizer() { "--tokenizer " } else { "" }
     }
 
-    /// Gets all files. Small files come first, so that an error shows before gigabytes are fetched.
+    /// Gets all files. Small files come first, so that an error appears before gigabytes are fetched.
     pub(super) fn gather(&self, files: &mut dyn Files, named: Option<&str>) -> Result<Gathered, LocalError> {
         let mut small = Vec::new();
         for file in &self.required {
@@ -183,7 +184,7 @@ fn add(hasher: &mut Sha256, name: &str, path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// A folder, and the hint for a file that it lacks.
+/// The files of one folder on this machine, and the hint for a file that it lacks.
 pub(super) struct OnDisk<'a> {
     folder: PathBuf,
     hint: &'a dyn Fn(&str) -> String,

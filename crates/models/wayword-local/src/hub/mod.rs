@@ -6,12 +6,12 @@
 //! models--ORG--NAME/refs/REVISION               the commit that a branch or tag pointed to
 //! models--ORG--NAME/blobs/HASH                  a file's bytes, by the hash that the hub gives them
 //! models--ORG--NAME/snapshots/COMMIT/FILE       a link to them
-//! models--ORG--NAME/.no_exist/COMMIT/FILE       the commit has no such file
+//! models--ORG--NAME/.no_exist/COMMIT/FILE       an empty file: the commit lacks FILE
 //! .locks/models--ORG--NAME/HASH.lock            locked while the bytes are fetched
 //! ```
 //!
-//! Architecture invariant: a file is linked into a snapshot only if it has the hash that the hub gave, and the token is
-//! sent only to the hub's own address.
+//! Architecture invariant: a file is linked into a snapshot only if it has the hash that the hub announced, and the
+//! token is sent only to the hub's own address.
 
 mod cache;
 mod client;
@@ -43,7 +43,7 @@ pub struct Hub {
     client: Client,
 }
 
-/// A model's files.
+/// The files of a model on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelFolder {
     /// The folder that the files are in.
@@ -58,7 +58,7 @@ pub struct ModelFolder {
 }
 
 impl Hub {
-    /// Access to models with these settings.
+    /// Gives access to models with these settings. Does not use the network.
     ///
     /// # Errors
     /// When the endpoint is not a web address.

@@ -1,4 +1,4 @@
-//! Names of models in process.
+//! The names of in-process models, such as `hf/openai/clip-vit-base-patch32`.
 
 use crate::LocalError;
 use std::{
@@ -6,10 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The beginning of names of models in process.
+/// The beginning of every name.
 const PREFIX: &str = "hf/";
 
-/// The revision if a name has none.
+/// The revision for a name without one.
 const MAIN: &str = "main";
 
 const LONGEST_PART: usize = 96;
@@ -17,22 +17,22 @@ const LONGEST_REVISION: usize = 200;
 const LONGEST_FILE: usize = 200;
 const LONGEST_PATH: usize = 4096;
 
-/// A name that says where a model is:
+/// The name of a model. It gives the place of the model's files:
 ///
 /// - `hf/ORG/NAME`, `hf/ORG/NAME@REVISION`: on the hub, at a branch, tag or commit (`main` if none is given);
-/// - `hf/ORG/NAME@REVISION:FILE.gguf`, or `FILE.pth`: one file of such a repository;
+/// - `hf/ORG/NAME@REVISION:FILE.gguf`, or `FILE.pth`: one file of a repository on the hub;
 /// - `hf//abs/folder`, `hf/./folder`, `hf/../folder`: a folder on this machine;
 /// - the same with a path that ends in `.gguf` or `.pth`: a file on this machine.
 ///
-/// Organisation, name, revision and file become parts of paths and addresses, so they cannot contain anything that
-/// leads elsewhere.
+/// Organisation, name, revision and file become parts of paths and addresses. So characters and names that could lead
+/// elsewhere, such as `..`, are refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelName {
     text: String,
     pub(super) source: ModelSource,
 }
 
-/// Where the files of a name are.
+/// The place of a model's files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum ModelSource {
     Hub(OnHub),
@@ -46,7 +46,7 @@ pub(super) struct OnHub {
     pub(super) org: String,
     pub(super) name: String,
     pub(super) revision: String,
-    /// The file in the name, for GGUF and for checkpoints as training leaves them.
+    /// The file in the name, for a GGUF file or a checkpoint as training leaves it.
     pub(super) file: Option<String>,
 }
 
@@ -131,7 +131,8 @@ fn local(path: &str) -> Result<ModelSource, &'static str> {
     Ok(source(PathBuf::from(path)))
 }
 
-/// The hub's rule for the parts of a repository's name. Two dashes would make the cache's folders ambiguous.
+/// The hub's rule for organisations and names. Two dashes in a row would make the names of the cache's folders
+/// ambiguous.
 pub(super) fn is_part(part: &str) -> bool {
     let inner = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let edge = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
@@ -153,12 +154,12 @@ fn is_file(file: &str) -> bool {
     file.len() <= LONGEST_FILE && is_one_file(Path::new(file)) && are_segments(file, allowed)
 }
 
-/// Whether a text is names between slashes, none of which is empty, hidden, or `..`.
+/// Whether a text consists of names with slashes between them, and no name is empty or begins with a dot.
 fn are_segments(text: &str, allowed: impl Fn(char) -> bool) -> bool {
     text.split('/').all(|segment| !segment.is_empty() && !segment.starts_with('.') && segment.chars().all(&allowed))
 }
 
-/// Whether a model is one file of this name, and not a folder.
+/// Whether a path has the ending of a model that is one file.
 fn is_one_file(path: &Path) -> bool {
     ["gguf", "pth"].iter().any(|end| ends_in(path, end))
 }

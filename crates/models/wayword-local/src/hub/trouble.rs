@@ -1,20 +1,20 @@
-//! Failed requests: the reason, whether another attempt may succeed, and how long to try.
+//! Failed requests: the reason, whether another attempt may succeed, and when to give up.
 
 use super::name::OnHub;
 use crate::LocalError;
 use std::{io::ErrorKind, thread, time::Duration};
 use ureq::http::HeaderMap;
 
-/// Failures in a row after which the program gives up on a file.
+/// The number of failures in a row after which the program gives up on a file.
 const MOST_FAILURES: u32 = 5;
 
 /// Longest wait between two requests.
 const LONGEST_WAIT: Duration = Duration::from_secs(30);
 
-/// What to do if the hub's answer is wrong.
+/// The hint for an answer of the hub that is wrong.
 pub(super) const TRY_LATER: &str = "try again later; if you have set HF_ENDPOINT, check it";
 
-/// What to do if the answer is not that of a hub.
+/// The hint for an answer that is not that of a hub.
 pub(super) const SEE_WHO_ANSWERS: &str =
     "if you have set HF_ENDPOINT, check it; check also whether something on the network answers instead of the hub";
 
@@ -32,8 +32,8 @@ impl Trouble {
         Self::Passing { problem, wait: None }
     }
 
-    /// The trouble of a request that got no status. The message names `host` instead of the address, which may be
-    /// signed.
+    /// The failure of a request that got no answer with a status. The message names `host` instead of the address,
+    /// which may contain a signature.
     pub(super) fn unanswered(error: &ureq::Error, address: &str, host: &str) -> Self {
         let problem = format!("{host}: {error}");
         let passes = match error {
@@ -55,7 +55,7 @@ impl Trouble {
         Self::Lasting(LocalError::download(address, problem, hint))
     }
 
-    /// The trouble of a status, with what to do about it.
+    /// The failure for a status that is no success, with a hint.
     pub(super) fn refused(status: u16, headers: &HeaderMap, address: &str, model: &OnHub, had_token: bool) -> Self {
         let unexpected = format!("the server answers with status {status}");
         if matches!(status, 408 | 429 | 500..=599) {
@@ -87,7 +87,7 @@ impl Trouble {
     }
 }
 
-/// Whether the model exists and lacks the file, which need not be an error.
+/// Whether the answer means that the model exists but lacks the file. This is no error for an optional file.
 pub(super) fn is_absence(status: u16, headers: &HeaderMap) -> bool {
     status == 404 && !["RepoNotFound", "RevisionNotFound"].contains(&code(headers))
 }
@@ -102,7 +102,7 @@ pub(super) fn text<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
     headers.get(name)?.to_str().ok()
 }
 
-/// Decides how long to try again.
+/// Counts failures, and decides whether another attempt is made and how long to wait before it.
 #[derive(Debug)]
 pub(super) struct Patience {
     failures: u32,
@@ -110,7 +110,7 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// The first wait. Each later wait is twice the one before.
+    /// Begins with this wait. Each later wait is twice as long as the one before.
     pub(super) fn new(first_wait: Duration) -> Self {
         Self { failures: 0, first_wait }
     }
@@ -120,7 +120,7 @@ impl Patience {
         self.failures = 0;
     }
 
-    /// Waits before another try.
+    /// Waits before another attempt, or returns the error that ends the attempts.
     ///
     /// # Errors
     /// When no other attempt will succeed, or there were too many failures.

@@ -1,8 +1,9 @@
-//! Whether a file is the one that its makers published, or at least the one that was used before.
+//! Checks that a checkpoint is the file that its makers published, or at least the one that was used before.
 //!
-//! The hub's hash protects a download, but not from a repository whose files were exchanged. A checkpoint that training
-//! left is a pickle; nothing in it is executed here, but its results may be anything. So its SHA-256 must be the one that
-//! is published, or that the user gave, or that was kept when the file was used first.
+//! The hub's hash protects against a damaged download, but not against a repository in which somebody replaced the
+//! file. A checkpoint that training left is a pickle. No code in it is executed here, but false weights may give any
+//! result. So its SHA-256 must equal the one that the user gave, or the published one. For a file without either, the
+//! hash of the first use is kept, and later uses are compared with it.
 
 use super::{
     HubConfig, Progress,
@@ -27,13 +28,13 @@ const PUBLISHED: [(&str, &str); 3] = [
     ("glip_tiny_model_o365_goldg.pth", "4274770c817b966621097df306c5ae857a2bdf3dfc242afc402382d9604382d3"),
 ];
 
-/// Longest file in which a hash is kept, bytes.
+/// The longest file of a kept hash that is read, bytes.
 const LONGEST_KEPT: u64 = 100;
 
-/// Checks a file of a model, and tells what its hash was held against.
+/// Checks the hash of a model's file. At the first use of a file without a published hash, `progress` gets a note.
 ///
 /// # Errors
-/// When it is not the file that it should be.
+/// When the hash is not the expected one, or a file cannot be read or written.
 pub(super) fn check(
     config: &HubConfig,
     name: &ModelName,
@@ -69,7 +70,7 @@ pub(super) fn check(
     }
 }
 
-/// The name of the file that a name is for.
+/// The file name of the checkpoint that a model's name refers to.
 fn path_name(name: &ModelName) -> Option<&str> {
     match &name.source {
         ModelSource::Hub(model) => model.file.as_deref().and_then(|file| file.rsplit('/').next()),
@@ -78,7 +79,7 @@ fn path_name(name: &ModelName) -> Option<&str> {
     }
 }
 
-/// Where a file's hash is kept: beside the model in the cache, or for the user's own files by the hash of their path.
+/// The path of a kept hash: in the model's folder of the cache, or, for the user's own file, by the hash of its path.
 fn place(config: &HubConfig, name: &ModelName, path: &Path) -> PathBuf {
     match &name.source {
         ModelSource::Hub(model) => {

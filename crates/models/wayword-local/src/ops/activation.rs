@@ -1,4 +1,4 @@
-//! Activation functions.
+//! Activation functions, on the CPU in parallel.
 
 use super::kernels::{PIECE, is_ours, slice};
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor};

@@ -1,4 +1,8 @@
 //! Multi-head attention.
+//!
+//! On the CPU a thread takes some queries of one batch at a time. It computes their scores for a head, the softmax, and
+//! the mix of values before it goes on, so that the scores, which would be a large tensor, stay in the cache and are
+//! never stored.
 
 use super::{
     kernels::{Options, is_ours, pack, product, slice},
@@ -11,13 +15,13 @@ use rten_gemm::{GemmInputA, GemmInputB, PackedBMatrix};
 use rten_tensor::NdTensorView;
 use std::ops::Range;
 
-/// Most scores that are computed at a time: about as many as fit into a core's cache.
+/// The most scores that a thread computes at a time: about as many as fit into a core's cache.
 const SCORES: usize = 384 << 10;
 
-/// Most queries that are computed at a time.
+/// The most queries that a thread takes at a time.
 const MOST_QUERIES: usize = 96;
 
-/// With fewer queries at a time, keys and values are not packed beforehand.
+/// With fewer queries at a time than this, packing keys and values beforehand does not pay.
 const LEAST_PACKED: usize = 24;
 
 /// softmax(q kᵀ * scale + bias) v, for each head.
@@ -29,8 +33,8 @@ pub(crate) struct Attention<'a> {
 }
 
 impl Attention<'_> {
-    /// From queries [batch, queries, heads * size] and keys and values [batch, keys, heads * size], states
-    /// [batch, queries, heads * size]. The inputs may be parts of a wider tensor along its last axis.
+    /// The states [batch, queries, heads * size] for queries of the same shape, and keys and values [batch, keys, heads
+    /// * size]. The inputs may be parts of a wider tensor along its last axis.
     pub(crate) fn of(&self, q: &Tensor, k: &Tensor, v: &Tensor) -> Result<Tensor> {
         if is_ours(q) {
             return match self.bias {
@@ -60,17 +64,18 @@ impl Attention<'_> {
     }
 }
 
-/// One layer's keys and values [batch, tokens, width] of the tokens so far, so that each is computed once.
+/// The keys and values [batch, tokens, width] of one layer, for the tokens so far. A decoder that writes token by token
+/// keeps them, so that each is computed once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Past(Option<(Tensor, Tensor)>);
 
 impl Past {
-    /// How many tokens there are.
+    /// The number of tokens so far.
     pub(crate) fn len(&self) -> Result<usize> {
         self.0.as_ref().map_or(Ok(0), |(keys, _)| keys.dim(1))
     }
 
-    /// Adds the keys and values of the next tokens, and returns all.
+    /// Adds the keys and values of the next tokens, and returns those of all tokens so far.
     pub(crate) fn grow(&mut self, keys: Tensor, values: Tensor) -> Result<(Tensor, Tensor)> {
         let grown = match self.0.take() {
             None => (keys, values),
@@ -83,7 +88,7 @@ impl Past {
     }
 }
 
-/// A mask [queries, keys] with which a query sees itself and everything before it. The last query is the last key.
+/// A mask [queries, keys] that hides all later keys from a query. The last query belongs to the last key.
 pub(crate) fn causal(queries: usize, keys: usize, device: &Device) -> Result<Tensor> {
     let before = keys - queries.min(keys);
     let sees = |at: usize| if at % keys <= at / keys + before { 0.0 } else { f32::NEG_INFINITY };
@@ -97,7 +102,8 @@ struct Heads<'a> {
     bias: Option<&'a [f32]>,
 }
 
-/// A tensor [batch, count, width], which may be a part of a wider one.
+/// A view of a tensor [batch, count, width], which may be a part of a wider one. The steps are numbers from one batch
+/// or row to the next.
 struct Rows<'a> {
     numbers: &'a [f32],
     batch: usize,
@@ -126,7 +132,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A head's keys, transposed, and values, packed for all queries. Without them they are packed for each product.
+/// The keys, transposed, and the values of a head, packed once for all queries. Where there are none, each product
+/// packs them itself.
 type Packed = (PackedBMatrix<f32>, PackedBMatrix<f32>);
 
 impl Heads<'_> {
@@ -151,7 +158,7 @@ impl Heads<'_> {
                         let bias = &bias[(at * of.q.count + from) * keys..];
                         scores.iter_mut().zip(bias).for_each(|(score, bias)| *score += bias);
                     }
-                    // The shares are divided by their sum where they are few: after the product with the values.
+                    // The division by the sum comes after the product with the values, where there are fewer numbers.
                     let sums: Vec<f32> = scores.chunks_mut(keys).map(exponentials).collect();
                     let scores = GemmInputA::Unpacked(NdTensorView::from_data([queries, keys], &*scores));
                     product(states, scores, v, Options::default())?;
@@ -165,7 +172,8 @@ impl Heads<'_> {
         })
     }
 
-    /// The keys and values of all heads, packed, where each is used by several pieces of the queries.
+    /// Packs the keys and values of all heads, if several pieces of the queries use them. Otherwise returns an empty
+    /// list.
     fn packed(&self, of: &Inputs<'_>, queries: usize) -> Result<Vec<Packed>> {
         if queries >= of.q.count || queries < LEAST_PACKED {
             return Ok(Vec::new());
@@ -187,8 +195,8 @@ struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// How many queries of a batch a thread takes at a time: few enough that their scores stay in the cache, and that no
-    /// thread is without work.
+    /// The number of queries of a batch that a thread takes at a time: so few that their scores stay in the cache, and
+    /// that every thread has work.
     fn at_a_time(&self) -> usize {
         let least = rayon::current_num_threads().div_ceil(self.q.batch.max(1));
         (SCORES / self.k.count.max(1)).clamp(LEAST_PACKED, MOST_QUERIES).min(self.q.count.div_ceil(least)).max(1)

@@ -1,7 +1,9 @@
 //! Convolutions of 3 x 3 over channels-last maps, plain and deformed.
 //!
-//! On the CPU, tiles of positions are gathered, nine rows of channels for each, and multiplied while they are in the
-//! cache. On any other device it is gathers and a product of candle's.
+//! A convolution reads nine positions, the taps of the kernel, for each output position. A deformed one (arXiv
+//! 1811.11168) moves each tap by an offset that another layer computed, and multiplies it by a mask. On the CPU the
+//! taps of a tile of positions are copied side by side and multiplied with the kernel while they are in the cache.
+//! Other devices do the same for the whole map with candle's operators.
 
 use super::{
     Linear,
@@ -11,10 +13,11 @@ use super::{
 use crate::{LocalError, weights::Scope};
 use candle_core::{Result, Tensor};
 
-/// Taps of a kernel, row by row.
+/// The number of taps of a kernel. They are numbered row by row.
 const TAPS: usize = 9;
 
-/// Numbers that a deformed convolution needs for each position: two offsets (down, across) a tap, then the masks.
+/// The numbers that a deformed convolution needs for each position: two offsets (down, across) for each tap, then a
+/// mask for each tap.
 pub(crate) const BENDS: usize = 3 * TAPS;
 
 /// A map of features: [height * width, channels], rows from the top.
@@ -39,7 +42,7 @@ pub(crate) struct Bends {
     width: usize,
 }
 
-/// Where a tap reads: rows of the map and their shares. What lies outside has a share of 0.
+/// The four positions around a tap, with their weights. Positions outside of the map have the weight 0.
 type Corners = [(usize, f32); 4];
 
 impl Map {
@@ -47,14 +50,14 @@ impl Map {
         self.height * self.width
     }
 
-    /// Its size after a convolution with this stride.
+    /// Height and width after a convolution with this stride.
     fn after(&self, stride: usize) -> (usize, usize) {
         (self.height.div_ceil(stride), self.width.div_ceil(stride))
     }
 }
 
 impl Bends {
-    /// From a map of [`BENDS`] channels, whose masks are not yet between 0 and 1.
+    /// Reads offsets and masks from a map of [`BENDS`] channels. A sigmoid brings the masks between 0 and 1.
     pub(crate) fn new(map: &Map) -> Result<Self> {
         let mut numbers = map.x.to_dtype(candle_core::DType::F32)?.flatten_all()?.to_vec1::<f32>()?;
         for masks in numbers.chunks_exact_mut(BENDS).map(|row| &mut row[2 * TAPS..]) {
@@ -63,10 +66,11 @@ impl Bends {
         Ok(Self { numbers, height: map.height, width: map.width })
     }
 
-    /// The offsets (down, across) and the mask of a tap at a position of a map of another size or the same.
+    /// The offsets (down, across) and the mask of a tap at a position of an output map of this size.
     ///
-    /// The published weights were trained with offsets of the wrong size in one place, which were read as memory is:
-    /// channel by channel, with the other map's size. So a map of another size must be read in that way here.
+    /// GLIP's head uses the offsets of one level for a map of another size. Its original code then indexed the memory
+    /// of the offsets, channel by channel, with the size of the other map, and the published weights were trained in
+    /// this way. So the same wrong numbers must be read here.
     fn at(&self, size: (usize, usize), position: usize, tap: usize) -> (f32, f32, f32) {
         let count = self.height * self.width;
         if size == (self.height, self.width) {
@@ -82,7 +86,7 @@ impl Bends {
 }
 
 impl Conv3 {
-    /// A convolution from a checkpoint's `weight` [outputs, inputs, 3, 3] and `bias`.
+    /// Reads a convolution: `weight` [outputs, inputs, 3, 3] and `bias`.
     pub(crate) fn load(weights: &Scope<'_>, inputs: usize, outputs: usize) -> std::result::Result<Self, LocalError> {
         let kernel = weights.tensor("weight", &[outputs, inputs, 3, 3])?;
         let bias = weights.tensor("bias", &[outputs])?;
@@ -103,8 +107,8 @@ impl Conv3 {
         self.gathered(map, (height, width), 1, corners)
     }
 
-    /// The modulated deformable convolution: each tap is moved by an offset, read between four positions, and weighted by
-    /// a mask.
+    /// The modulated deformable convolution: each tap is moved by an offset, read between four positions, and weighted
+    /// by a mask.
     pub(crate) fn deformed(&self, map: &Map, stride: usize, bends: &Bends) -> Result<Map> {
         let size = map.after(stride);
         let corners = |position: usize, tap: usize| {
@@ -115,7 +119,8 @@ impl Conv3 {
         self.gathered(map, size, 4, corners)
     }
 
-    /// The product of the kernel with what is read for each tap of each position; the first `used` corners count.
+    /// Mixes the corners of each tap of each position, and multiplies the taps with the kernel. Only the first `used`
+    /// corners count.
     fn gathered(
         &self,
         map: &Map,
@@ -152,9 +157,9 @@ fn place(position: usize, tap: usize, width: usize, stride: usize) -> (isize, is
     (at(position / width, tap / 3), at(position % width, tap % 3))
 }
 
-/// The four positions around a point, with their shares.
+/// The four positions around a point, with their weights for bilinear interpolation times `mask`.
 fn between(y: f32, x: f32, mask: f32, map: &Map) -> Corners {
-    // Far outside is as good as just outside, and cannot overflow.
+    // A point far outside gives 0 as one just outside does. Clamping prevents an overflow of the indices.
     let (y, x) = (y.clamp(-2.0, map.height as f32 + 1.0), x.clamp(-2.0, map.width as f32 + 1.0));
     let (top, left) = (y.floor(), x.floor());
     let (down, across) = (y - top, x - left);
@@ -171,7 +176,7 @@ fn between(y: f32, x: f32, mask: f32, map: &Map) -> Corners {
     ]
 }
 
-/// Writes the sum of rows of x with their shares.
+/// Writes the weighted sum of rows of x.
 pub(crate) fn mix(x: &[f32], width: usize, corners: &[(usize, f32)], into: &mut [f32]) {
     let row = |at: usize| &x[corners[at].0 * width..(corners[at].0 + 1) * width];
     match corners {
@@ -186,7 +191,7 @@ pub(crate) fn mix(x: &[f32], width: usize, corners: &[(usize, f32)], into: &mut 
     }
 }
 
-/// What is read for each tap of each position, [positions, taps * channels], by candle's operators.
+/// The taps of each position side by side, [positions, taps * channels], with candle's operators.
 fn on_device(map: &Map, count: usize, used: usize, corners: impl Fn(usize, usize) -> Corners) -> Result<Tensor> {
     let device = map.x.device();
     let tap = |tap: usize| {
@@ -196,7 +201,7 @@ fn on_device(map: &Map, count: usize, used: usize, corners: impl Fn(usize, usize
     Tensor::cat(&(0..TAPS).map(tap).collect::<Result<Vec<_>>>()?, 1)
 }
 
-/// The sum of four rows of x with their shares, for each of many points, by candle's operators.
+/// The weighted sum of four rows of x for each point, with candle's operators.
 pub(crate) fn rows_between(
     x: &Tensor,
     points: &[[(usize, f32); 4]],

@@ -1,8 +1,8 @@
-//! The inputs of a model: rows of a table by ids, and patches of a picture.
+//! The first steps of a model: looking up the vectors of token ids, and cutting a picture into patches.
 
 use candle_core::{DType, Result, Tensor};
 
-/// A table [count, size].
+/// A table [count, size] with a vector for each id.
 pub(crate) struct Embedding {
     table: Tensor,
 }
@@ -12,7 +12,7 @@ impl Embedding {
         Self { table }
     }
 
-    /// From ids [..], rows [.., size]. On the CPU they have 32 bits, whatever the table has.
+    /// The rows [.., size] of ids [..]. On the CPU they have 32 bits, whatever the precision of the table.
     pub(crate) fn of(&self, ids: &Tensor) -> Result<Tensor> {
         let mut shape = ids.dims().to_vec();
         shape.push(self.table.dim(1)?);
@@ -27,8 +27,8 @@ impl Embedding {
 }
 
 /// Cuts pictures [batch, 3, height, width] into squares of `size` pixels, [batch, patches, 3 * size * size], rows from
-/// the top. A convolution whose stride is its size equals a product with a matrix: a kernel [outputs, 3, size, size]
-/// becomes a layer with the weight [outputs, 3 * size * size].
+/// the top. A convolution with a stride equal to its size is a product of these patches with a matrix: a kernel
+/// [outputs, 3, size, size] becomes a layer with the weight [outputs, 3 * size * size].
 pub(crate) fn patches(pictures: &Tensor, size: usize) -> Result<Tensor> {
     let (batch, channels, height, width) = pictures.dims4()?;
     let (down, across) = (height / size, width / size);

@@ -1,4 +1,4 @@
-//! The second half of a transformer's layer, with the norm before or after it.
+//! The second half of a transformer's layer: two linear layers with an activation between them, a residual, and a norm.
 
 use super::{
     Activation, LayerNorm, Linear,
@@ -8,8 +8,8 @@ use super::{
 };
 use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
 
-/// x plus a narrow layer of the activation of a wide layer of x. There is a norm of what goes into the wide layer, or of
-/// the sum.
+/// Computes `x + narrow(activation(wide(x)))`. With `before`, the input of the wide layer is normalised; with `after`,
+/// the sum is.
 pub(crate) struct FeedForward<'a> {
     pub(crate) before: Option<&'a LayerNorm>,
     pub(crate) wide: &'a Linear,
@@ -30,7 +30,7 @@ impl FeedForward<'_> {
         }
     }
 
-    /// Adds to y, for some rows.
+    /// Computes some rows on the CPU: adds the output of the layers to y, which already contains x.
     fn some(
         &self,
         (wide, narrow): (&Packed, &Packed),

@@ -1,4 +1,5 @@
-//! Weights in 16 bits on the CPU: half the memory, and a product that reads half as much.
+//! Weights in 16 bits on the CPU. They take half the memory, and a product reads half as many bytes. The kernels
+//! compute in 32 bits, so a piece of the weights at a time is widened.
 
 use super::kernels::{Options, product};
 use candle_core::{DType, Result, Tensor, bail};
@@ -7,10 +8,10 @@ use rayon::prelude::*;
 use rten_gemm::{BiasVector, GemmInputA, GemmInputB};
 use rten_tensor::NdTensorView;
 
-/// How many outputs are widened to 32 bits at a time: few enough for the CPU's cache.
+/// The number of outputs that are widened to 32 bits at a time: few enough for the CPU's cache.
 const PIECE: usize = 128;
 
-/// A matrix [outputs, inputs].
+/// A matrix [outputs, inputs] in 16 bits.
 pub(super) struct HalfMatrix {
     numbers: Numbers,
 }

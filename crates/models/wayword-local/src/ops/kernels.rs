@@ -1,18 +1,18 @@
-//! The CPU kernels for products, and candle's tensors as slices of numbers for them.
+//! Calls the CPU kernels for matrix products, and gives them the numbers of candle's tensors as slices.
 
 use candle_core::{CpuStorage, Layout, Result, Tensor, WithDType, bail};
 use rten_gemm::{GemmExecutor, GemmInputA, GemmInputB, GemmOptions, PackedBMatrix};
 use rten_tensor::NdTensorView;
 
 thread_local! {
-    /// The kernels for this CPU. They cannot be shared between threads, and cost nothing to make.
+    /// The kernels for this CPU. They cannot be shared between threads, and making them is cheap.
     static KERNELS: GemmExecutor = GemmExecutor::default();
 }
 
 /// Options of a product.
 pub(crate) type Options<'a> = GemmOptions<'a, f32, f32, f32>;
 
-/// Writes a times b into y, on all threads.
+/// Writes the matrix product of a and b into y, on all threads.
 pub(crate) fn product(
     y: &mut [f32],
     a: GemmInputA<'_, f32>,
@@ -32,7 +32,7 @@ pub(super) fn pack(matrix: NdTensorView<'_, f32, 2>) -> PackedBMatrix<f32> {
     KERNELS.with(|kernels| kernels.prepack_b(matrix))
 }
 
-/// Smallest piece of work for a thread, numbers. For less, another thread costs more time than it saves.
+/// The smallest piece of work for a thread, numbers. For less, another thread costs more time than it saves.
 pub(super) const PIECE: usize = 16 << 10;
 
 /// The numbers of a contiguous tensor.
@@ -45,19 +45,19 @@ pub(crate) fn slice<'a, T: WithDType>(storage: &'a CpuStorage, layout: &Layout) 
     }
 }
 
-/// How many rows a tensor has, and the length of its last axis.
+/// The number of rows of a tensor, and their length, which is that of the last axis.
 pub(super) fn rows(layout: &Layout) -> Result<(usize, usize)> {
     let dims = layout.shape().dims();
     let Some((&last, others)) = dims.split_last() else { bail!("a single number has no rows") };
     Ok((others.iter().product(), last))
 }
 
-/// Whether this crate's own operators compute with a tensor.
+/// Whether this crate's own operators take a tensor: 32 bits on the CPU. For all others candle's operators are used.
 pub(crate) fn is_ours(tensor: &Tensor) -> bool {
     tensor.device().is_cpu() && tensor.dtype() == candle_core::DType::F32
 }
 
-/// How many rows of this length make a piece of work.
+/// The number of rows of this length that make a piece of work.
 pub(super) fn rows_per_piece(row: usize) -> usize {
     (PIECE / row.max(1)).max(1)
 }

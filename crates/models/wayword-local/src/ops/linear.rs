@@ -1,4 +1,4 @@
-//! Linear layers.
+//! Linear layers, with the norm, activation or sum that often comes before or after them in the same pass.
 
 use super::{
     Activation, LayerNorm,
@@ -9,14 +9,14 @@ use super::{
 };
 use candle_core::{CpuStorage, CustomOp1, CustomOp2, DType, Layout, Result, Shape, Tensor, bail};
 
-/// x times a matrix, plus a bias: from [.., inputs] to [.., outputs].
+/// Multiplies x [.., inputs] by a matrix and adds a bias: [.., outputs].
 pub(crate) struct Linear {
     matrix: Matrix,
     bias: Option<Tensor>,
     outputs: usize,
 }
 
-/// Weights in the form for the computation. The checkpoint's own tensor is not kept in addition.
+/// The weights in the form that the device computes with. The checkpoint's own tensor is dropped.
 enum Matrix {
     /// Packed once for the CPU kernels.
     Packed(Packed),
@@ -90,12 +90,12 @@ impl Linear {
         }
     }
 
-    /// Writes the layer's output for the rows of x into y, on the CPU.
+    /// Writes the layer's output for the rows of x into y. Only for layers on the CPU.
     pub(crate) fn rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
         self.into(x, y, false)
     }
 
-    /// Adds the layer's output for the rows of x to y, on the CPU.
+    /// Adds the layer's output for the rows of x to y. Only for layers on the CPU.
     pub(crate) fn add_rows(&self, x: &[f32], y: &mut [f32]) -> Result<()> {
         self.into(x, y, true)
     }
@@ -137,7 +137,7 @@ impl Linear {
     }
 }
 
-/// One product of a layer.
+/// One product of a layer, with a norm before it and an activation after it, as an operator of candle.
 struct Product<'a> {
     layer: &'a Linear,
     norm: Option<&'a LayerNorm>,
@@ -145,7 +145,7 @@ struct Product<'a> {
 }
 
 impl Product<'_> {
-    /// y = activation(norm(x) matrix + bias), for some rows.
+    /// Computes y = activation(norm(x) matrix + bias) for some rows.
     fn some(&self, packed: &Packed, bias: Option<&[f32]>, x: &[f32], y: &mut [f32]) -> Result<()> {
         match self.norm {
             None => packed.product(x, bias, y, false)?,
@@ -186,7 +186,7 @@ impl CustomOp1 for Product<'_> {
     }
 }
 
-/// A product of a layer that is added to something, and the norm of it.
+/// One product of a layer that is added to another tensor, with a norm of the sum, as an operator of candle.
 struct Onto<'a> {
     layer: &'a Linear,
     after: Option<&'a LayerNorm>,

@@ -8,7 +8,7 @@ use rten_simd::SimdOp;
 use rten_tensor::NdTensorView;
 use rten_vecmath::Softmax;
 
-/// a [rows, inner] times b [inner, columns], which may be transposed.
+/// The product of a [rows, inner] and b [inner, columns]. b may be a transposed view.
 pub(crate) fn times(a: &Tensor, b: &Tensor) -> Result<Tensor> {
     let shape = (a.dim(0)?, b.dim(1)?);
     if !is_ours(a) {
@@ -19,7 +19,7 @@ pub(crate) fn times(a: &Tensor, b: &Tensor) -> Result<Tensor> {
     Tensor::from_vec(y, shape, a.device())
 }
 
-/// x + a b, plus a bias [columns] for each row.
+/// Computes x + a b, plus a bias [columns] for each row.
 pub(crate) fn plus_times(x: &Tensor, a: &Tensor, b: &Tensor, bias: Option<&Tensor>) -> Result<Tensor> {
     if !is_ours(a) {
         let sum = (x + a.matmul(b)?)?;
@@ -41,7 +41,7 @@ fn into(y: &mut [f32], a: &Tensor, b: &Tensor, options: Options<'_>) -> Result<(
     if inner != b_inner {
         bail!("matrices {:?} and {:?} do not fit together", a.shape(), b.shape());
     }
-    // A transposed matrix is read as it lies.
+    // A transposed view is read in the order in which its memory lies, without a copy.
     let is_turned = b.t()?.is_contiguous() && !b.is_contiguous();
     let lies = if is_turned { b.t()? } else { b.contiguous()? };
     with_numbers(a, |a| {
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn they_are_candles() {
+    fn products_and_softmax_agree_with_candle() {
         let (a, b, turned) = (drawn(&[70, 33], 1), drawn(&[33, 40], 2), drawn(&[40, 33], 3));
         agree(&times(&a, &b).unwrap(), &a.matmul(&b).unwrap());
         agree(&times(&a, &turned.t().unwrap()).unwrap(), &a.matmul(&turned.t().unwrap()).unwrap());

@@ -1,6 +1,6 @@
-//! The operators of this crate's models.
+//! The operators of this crate's models: linear layers, attention, norms, activations, convolutions.
 //!
-//! On the CPU each operator is one pass over candle's tensors, with the kernels of `rten-gemm` and `rten-vecmath`.
+//! On the CPU each operator makes one pass over candle's tensors, with the kernels of `rten-gemm` and `rten-vecmath`.
 //! candle's own operators are 1.5 to 4 times slower there, because they pack weights again for each product and run
 //! GELU, bias and softmax on one thread. On any other device candle's own operators are used.
 

@@ -1,4 +1,4 @@
-//! Norms over the last axis.
+//! Layer norms and root-mean-square norms over the last axis.
 
 use super::kernels::{is_ours, rows, rows_per_piece, slice, with_numbers};
 use candle_core::{CpuStorage, CustomOp2, CustomOp3, Layout, Result, Shape, Tensor};
@@ -24,7 +24,7 @@ impl LayerNorm {
         Self { weight: wide(weight), bias: wide(bias), epsilon }
     }
 
-    /// Of x [.., size].
+    /// The norm of x [.., size].
     pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
         if is_ours(x) {
             return x.contiguous()?.apply_op3_no_bwd(&self.weight, &self.bias, &Standard(self.epsilon));
@@ -55,7 +55,7 @@ impl RmsNorm {
         Self { weight: wide(weight), epsilon }
     }
 
-    /// Of x [.., size].
+    /// The norm of x [.., size].
     pub(crate) fn of(&self, x: &Tensor) -> Result<Tensor> {
         if is_ours(x) {
             return x.contiguous()?.apply_op2_no_bwd(&self.weight, &RootMeanSquare(self.epsilon));
@@ -64,7 +64,7 @@ impl RmsNorm {
     }
 }
 
-/// On the CPU the states between layers have 32 bits, whatever the precision of the weights.
+/// Widens a weight on the CPU: the states between layers have 32 bits there, whatever the precision of the weights.
 fn wide(weight: Tensor) -> Tensor {
     if weight.device().is_cpu() { weight.to_dtype(candle_core::DType::F32).unwrap_or(weight) } else { weight }
 }

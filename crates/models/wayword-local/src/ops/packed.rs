@@ -1,4 +1,4 @@
-//! Weights in 32 bits, packed for the CPU kernels.
+//! Weights in 32 bits on the CPU, packed once into the order in which the kernels read them.
 
 use super::{
     kernels::{Options, packed, product},
@@ -8,18 +8,19 @@ use candle_core::{Result, bail};
 use rten_gemm::{BiasVector, GemmInputA, GemmInputB, PackedBMatrix};
 use rten_tensor::NdTensorView;
 
-/// The most columns that the kernels give to a thread at a time.
+/// The most columns that the kernels of `rten-gemm` give to a thread at a time.
 const COLUMNS: usize = 1024;
 
-/// Columns that the kernels compute together.
+/// The number of columns that the kernels compute together.
 const TILE: usize = 32;
 
-/// A matrix [outputs, inputs].
+/// A matrix [outputs, inputs], in pieces of columns (outputs).
 ///
-/// The kernels share out blocks of columns. If there are some more blocks than threads, one thread works last and alone,
-/// as with 3072 columns on 2 threads; so the columns are packed in as many pieces as make the blocks come out even.
+/// The kernels give blocks of 1024 columns to the threads. With 3072 columns on 2 threads there are three blocks, so
+/// that one thread works on the last block while the other one waits. Two pieces of 1536 columns keep both threads
+/// busy.
 pub(super) struct Packed {
-    /// Each with the number of its columns.
+    /// The pieces, each with the number of its columns.
     pieces: Vec<(PackedBMatrix<f32>, usize)>,
     inputs: usize,
     outputs: usize,
@@ -36,7 +37,8 @@ impl Packed {
         Self { pieces: pieces.map(piece).collect(), inputs, outputs }
     }
 
-    /// Writes x [count, inputs] times the matrix, plus a bias, into y [count, outputs], or adds it.
+    /// Multiplies x [count, inputs] by the matrix, adds a bias, and writes the result into y [count, outputs], or adds
+    /// it to y if `adds`.
     pub(super) fn product(&self, x: &[f32], bias: Option<&[f32]>, y: &mut [f32], adds: bool) -> Result<()> {
         let count = x.len() / self.inputs.max(1);
         if x.len() != count * self.inputs || y.len() != count * self.outputs {
@@ -70,7 +72,7 @@ impl Packed {
     }
 }
 
-/// How many columns a piece has.
+/// The number of columns of a piece.
 fn at_a_time(outputs: usize, threads: usize) -> usize {
     let pieces = outputs.div_ceil(threads * COLUMNS);
     if threads < 2 || pieces < 2 { outputs } else { outputs.div_ceil(pieces).next_multiple_of(threads * TILE) }
@@ -96,8 +98,8 @@ mod tests {
     }
 
     #[test]
-    fn pieces_are_one_matrix() {
-        // Numbers whose products are exact.
+    fn product_of_the_pieces_equals_that_of_the_whole_matrix() {
+        // Small whole numbers, so that all products are exact.
         let (outputs, inputs) = (5000, 3);
         let weight: Vec<f32> = (0..outputs * inputs).map(|at| (at % 11) as f32).collect();
         let bias: Vec<f32> = (0..outputs).map(|at| (at % 7) as f32).collect();

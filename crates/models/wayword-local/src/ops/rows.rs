@@ -1,21 +1,22 @@
-//! Shares the rows of a computation out to threads.
+//! Distributes the rows of a computation over the threads.
 //!
-//! A layer takes some rows at a time through all of its steps, so that what lies between the steps stays in the cache
-//! and is never allocated for all rows.
+//! A thread takes some rows at a time through all steps of a layer. So the numbers between two steps stay in the cache,
+//! and are never allocated for all rows.
 
 use candle_core::Result;
 use rayon::prelude::*;
 use std::cell::RefCell;
 
-/// Fewest and most rows that a thread takes at a time. With fewer a product's own columns are shared out instead.
+/// The fewest and the most rows that a thread takes at a time. If there are fewer, the kernels distribute the columns
+/// of a product instead.
 const LEAST: usize = 48;
 const MOST: usize = 144;
 
-/// The kernels compute this many rows at a time.
+/// The number of rows that the kernels compute together.
 const TILE: usize = 6;
 
 thread_local! {
-    /// Memory that was used before.
+    /// Memory from earlier computations, to be used again.
     static SPARE: RefCell<Vec<Vec<f32>>> = const { RefCell::new(Vec::new()) };
 }
 
@@ -37,8 +38,8 @@ pub(super) fn by_rows(
     }
 }
 
-/// How many of `count` rows a thread takes at a time, so that all threads end at about the same time. `None` if the rows
-/// are too few to be shared out.
+/// The number of rows, of `count`, that a thread takes at a time, so that all threads end at about the same time.
+/// `None` if there are too few rows to distribute.
 fn at_a_time(count: usize, threads: usize) -> Option<usize> {
     if threads < 2 || count < threads * LEAST {
         return (threads < 2 && count > MOST).then_some(MOST);
@@ -47,7 +48,7 @@ fn at_a_time(count: usize, threads: usize) -> Option<usize> {
     (LEAST / TILE..=MOST / TILE).rev().map(|tiles| tiles * TILE).min_by_key(longest)
 }
 
-/// Calls `then` with `length` numbers of any value.
+/// Calls `then` with memory for `length` numbers. Their values are leftovers of earlier uses.
 pub(super) fn with_spare<T>(length: usize, then: impl FnOnce(&mut [f32]) -> T) -> T {
     let mut spare = SPARE.with(|spare| spare.borrow_mut().pop()).unwrap_or_default();
     if spare.len() < length {

@@ -1,4 +1,4 @@
-//! The exponentials of a row of scores.
+//! The exponentials and their sum for a softmax, in vector instructions of the CPU.
 
 use rten_simd::{
     Isa, Simd, SimdIterable, SimdOp, SimdUnaryOp,
@@ -7,7 +7,8 @@ use rten_simd::{
 };
 use rten_vecmath::Exp;
 
-/// Replaces scores by exp(score - largest score), and returns the sum. Divided by it, they are the softmax.
+/// Replaces scores by exp(score - largest score), and returns their sum. The numbers divided by the sum are the
+/// softmax. The caller divides, because it may do so later, with fewer numbers.
 pub(super) fn exponentials(scores: &mut [f32]) -> f32 {
     Exponentials(scores).dispatch()
 }
@@ -23,7 +24,7 @@ impl SimdOp for Exponentials<'_> {
         let mut scores = self.0.simd_iter(ops);
         let largest = scores.by_ref().fold(ops.splat(f32::MIN), |largest, score| ops.max(largest, score));
         let largest = largest.to_array().into_iter().fold(f32::MIN, f32::max);
-        // The last scores, which do not fill a vector.
+        // The number of last scores, which do not fill a vector.
         let rest = self.0.len() % ops.len();
         let largest = self.0[self.0.len() - rest..].iter().copied().fold(largest, f32::max);
         let (least, exp) = (ops.splat(largest), Exp {});
@@ -52,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_sum_to_what_is_returned_for_every_length() {
+    fn exponentials_return_their_sum_for_every_length() {
         for length in 1..70 {
             let before: Vec<f32> = (0..length).map(|at| (at * 37 % 11) as f32 - 5.0).collect();
             let mut after = before.clone();

@@ -97,7 +97,7 @@ fn attention_over_many_keys_is_computed_in_pieces() {
 }
 
 #[test]
-fn steps_that_are_taken_together_give_what_they_give_one_by_one() {
+fn fused_operators_agree_with_single_ones() {
     let norm = LayerNorm::new(random(&[48], 1), random(&[48], 2), 1e-5);
     for dtype in [DType::F32, DType::BF16] {
         let layer = |outputs: usize, inputs: usize, seed| {
@@ -126,13 +126,13 @@ fn steps_that_are_taken_together_give_what_they_give_one_by_one() {
 }
 
 #[test]
-fn a_query_sees_itself_and_what_was_before() {
+fn causal_mask_hides_later_keys_only() {
     let mask = causal(2, 3, &Device::Cpu).unwrap().to_vec2::<f32>().unwrap();
     assert_eq!(mask, [[0.0, 0.0, f32::NEG_INFINITY], [0.0, 0.0, 0.0]]);
 }
 
 #[test]
-fn patches_and_a_layer_are_a_convolution() {
+fn patches_times_a_linear_layer_equal_a_convolution() {
     let (pictures, kernel) = (random(&[2, 3, 8, 12], 1), random(&[5, 3, 4, 4], 2));
     let layer = Linear::new(&kernel.reshape((5, 48)).unwrap(), None).unwrap();
     let ours = layer.of(&patches(&pictures, 4).unwrap()).unwrap();

@@ -1,27 +1,26 @@
-//! Passes over the rows of a tensor by tiles, each of which goes through several layers while it is in the processor's
-//! cache.
+//! Computes the rows of a tensor in tiles. A tile goes through several layers while it is in the processor's cache.
 
 use candle_core::Result;
 use rayon::prelude::*;
 
-/// Rows of a tile: as many as the kernels take at a time.
+/// The most rows of a tile: as many as the kernels take at a time.
 pub(crate) const TILE: usize = 64;
 
-/// Calls `tile` for each tile of rows of `width` numbers of y, on all threads: with the number of its first row, the
-/// rows, and memory to work in, which keeps what the last tile left there.
+/// Calls `tile` for each tile of y, a tensor with rows of `width` numbers, on all threads. It gets the number of the
+/// tile's first row, the rows, and memory to work in, which contains leftovers of other tiles.
 pub(crate) fn each_tile(
     y: &mut [f32],
     width: usize,
     tile: impl Fn(usize, &mut [f32], &mut Vec<f32>) -> Result<()> + Sync,
 ) -> Result<()> {
-    // Few rows are spread over the threads.
+    // If there are few rows, smaller tiles give every thread some.
     let rows = y.len() / width.max(1);
     let even = rows.div_ceil(rayon::current_num_threads()).next_multiple_of(8);
     let tiles = y.par_chunks_mut(width.max(1) * even.min(TILE)).enumerate();
     tiles.try_for_each_init(Vec::new, |memory, (at, y)| tile(at * even.min(TILE), y, memory))
 }
 
-/// Parts of these lengths of a memory, which grows if necessary.
+/// Splits memory into parts of these lengths. The memory grows if necessary.
 pub(crate) fn room<const N: usize>(memory: &mut Vec<f32>, lengths: [usize; N]) -> [&mut [f32]; N] {
     let needed = lengths.iter().sum();
     if memory.len() < needed {

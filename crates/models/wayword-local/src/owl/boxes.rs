@@ -1,16 +1,17 @@
-//! From logits and boxes of patches to what was found in a picture.
+//! Turns the logits and boxes of patches into finds in the picture's own pixels.
 
 use wayword_core::{Found, MOST_BOXES, apart};
 
-/// The least score of a box that is reported. transformers' examples take a box for a find from 0.1.
+/// The lowest score of a box that is reported. The examples of transformers count a box as a find from 0.1.
 const LEAST_SCORE: f32 = 0.01;
 
-/// The share of their union from which a box counts as the same as a better one. transformers drops none; patches side
-/// by side often give one thing nearly the same box.
+/// A box that overlaps with a better one by more than this share of their union counts as the same box. transformers
+/// drops none, but neighbouring patches often give nearly the same box for one thing.
 const SAME: f64 = 0.7;
 
-/// What a phrase's logits and the boxes of a picture's patches say, the best first. Boxes are of centre, width and
-/// height, as shares of the longer edge, because the picture was made a square by black on the right or at the bottom.
+/// The finds of a phrase, the best first, from its logits and the boxes of the picture's patches. Boxes are given as
+/// centre, width and height, in shares of the longer edge, because black at the right or at the bottom made the picture
+/// a square.
 pub(super) fn found(logits: &[f32], boxes: &[[f32; 4]], (width, height): (u32, u32)) -> Vec<Found> {
     let (width, height) = (width as f32, height as f32);
     let edge = width.max(height);
@@ -45,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_like_a_better_one_is_dropped_and_one_beside_it_stays() {
+    fn a_box_that_repeats_a_better_one_is_dropped() {
         let boxes = [[0.3, 0.3, 0.2, 0.2], [0.302, 0.3, 0.2, 0.2], [0.4, 0.3, 0.2, 0.2]];
         let told = found(&[0.0, 1.0, -1.0], &boxes, (80, 80));
         assert_eq!(told.len(), 2);
@@ -53,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn at_most_a_hundred_are_kept_and_none_below_the_floor() {
+    fn boxes_are_limited_in_number_and_by_score() {
         let boxes: Vec<[f32; 4]> = (0..300).map(|at| [at as f32 / 300.0, 0.5, 0.001, 0.001]).collect();
         assert_eq!(found(&vec![0.0; 300], &boxes, (1000, 1000)).len(), MOST_BOXES);
         assert!(found(&vec![-5.0; 300], &boxes, (1000, 1000)).is_empty());

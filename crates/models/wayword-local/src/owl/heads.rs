@@ -1,4 +1,5 @@
-//! What OWLv2 says of each patch: a class as a vector, how its likeness to a text becomes a logit, and a box.
+//! The output layers of OWLv2. For each patch they compute a class vector, the two numbers that turn its product with a
+//! text's vector into a logit, and a box.
 
 use crate::{
     LocalError,
@@ -7,7 +8,7 @@ use crate::{
 };
 use candle_core::{DType, Device, Result, Tensor};
 
-/// Keeps divisions by a length and logarithms finite.
+/// Keeps divisions by a length (the first), and logarithms of a share (the second) finite.
 const SMALL: (f64, f64) = (1e-6, 1e-4);
 
 /// Gives each patch a class.
@@ -22,7 +23,7 @@ pub(super) struct BoxHead {
     first: Linear,
     second: Linear,
     last: Linear,
-    /// What each patch's box is before the network moves it, [patches, 4].
+    /// The logits of each patch's own box, [patches, 4]. The network's output is added to them.
     bias: Tensor,
 }
 
@@ -30,14 +31,14 @@ pub(super) struct BoxHead {
 pub(super) struct Classes {
     /// Unit vectors [patches, size].
     pub(super) vectors: Tensor,
-    /// What is added to a product with a text's vector.
+    /// The number that is added to the product with a text's vector, for each patch.
     pub(super) shifts: Vec<f32>,
-    /// What the sum is multiplied by.
+    /// The factor by which the sum is then multiplied, for each patch.
     pub(super) scales: Vec<f32>,
 }
 
 impl ClassHead {
-    /// `seen` and `said` are the widths of the vision and the text tower.
+    /// Reads the head. `seen` is the width of the vision tower, and `said` that of the text tower.
     pub(super) fn load(weights: &Scope<'_>, seen: usize, said: usize) -> std::result::Result<Self, LocalError> {
         Ok(Self {
             class: weights.linear("dense0", seen, said)?,
@@ -46,11 +47,11 @@ impl ClassHead {
         })
     }
 
-    /// Of patches [1, patches, size].
+    /// The classes of patches [1, patches, size].
     pub(super) fn of(&self, patches: &Tensor) -> Result<Classes> {
         let vectors = self.class.of(patches)?.squeeze(0)?.to_dtype(DType::F32)?;
         let numbers = |layer: &Linear| layer.of(patches)?.flatten_all()?.to_dtype(DType::F32)?.to_vec1::<f32>();
-        // ELU plus 1, which is above 0.
+        // ELU plus 1. It is positive for every number.
         let positive = |number: f32| if number > 0.0 { number + 1.0 } else { number.exp() };
         Ok(Classes {
             vectors: unit(&vectors)?,
@@ -80,7 +81,7 @@ pub(super) fn unit(vectors: &Tensor) -> Result<Tensor> {
 }
 
 impl BoxHead {
-    /// `size` is the width of the vision tower, `side` the number of patches along an edge.
+    /// Reads the head. `size` is the width of the vision tower, and `side` the number of patches along an edge.
     pub(super) fn load(
         weights: &Scope<'_>,
         size: usize,
@@ -98,7 +99,7 @@ impl BoxHead {
         })
     }
 
-    /// Of patches [1, patches, size], boxes of centre, width and height, 0 to 1 of the square's edge.
+    /// The boxes of patches [1, patches, size]: centre, width and height, from 0 to 1, as shares of the square's edge.
     pub(super) fn of(&self, patches: &Tensor) -> Result<Vec<[f32; 4]>> {
         let x = self.first.of_then(patches, Activation::Gelu)?;
         let x = self.last.of(&self.second.of_then(&x, Activation::Gelu)?)?;
@@ -108,7 +109,8 @@ impl BoxHead {
     }
 }
 
-/// The logits of each patch's own box, rows from the top: its centre is its lower right corner, its size a patch.
+/// The logits of each patch's own box, rows from the top. The centre of the box is the lower right corner of the patch,
+/// and it is as large as the patch.
 fn placed(side: usize) -> Vec<f32> {
     let logit = |share: f32| (share + SMALL.1 as f32).ln() - (1.0 - share + SMALL.1 as f32).ln();
     let corner = |at: usize| logit((at + 1) as f32 / side as f32);

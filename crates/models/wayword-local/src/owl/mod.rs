@@ -1,7 +1,7 @@
-//! OWLv2: finds things in pictures by any phrases. Towers like CLIP's, with a class and a box for each patch.
+//! OWLv2: finds things in pictures by any phrases. It has the towers of CLIP, and gives each patch a class and a box.
 //!
-//! A picture and a phrase meet only in a product of vectors, so a picture is computed once for all phrases, and a phrase
-//! scores the same whatever else is looked for. Facts about the network are those of transformers 5.23.
+//! A picture and a phrase meet only in a product of vectors. So a picture is computed once for all phrases, and the
+//! score of a phrase does not depend on the other phrases. The network is implemented as in transformers 5.23.
 
 mod boxes;
 mod heads;
@@ -10,5 +10,5 @@ mod picture;
 
 pub use model::{Owl, OwlOutputs};
 
-/// The bytes of pictures' features that an OWLv2 keeps.
+/// The most memory for the features of recent pictures, bytes.
 pub(crate) const KEPT_BYTES: usize = 256 << 20;

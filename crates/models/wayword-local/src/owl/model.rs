@@ -1,4 +1,4 @@
-//! OWLv2 as a whole, and as a detector.
+//! A whole OWLv2 as a [`Detector`]: from a picture and phrases to boxes with scores.
 
 use super::{
     KEPT_BYTES,
@@ -18,13 +18,13 @@ use candle_core::{Result as Computed, Tensor};
 use std::{path::Path, sync::Arc};
 use wayword_core::{Detector, Found, Image, ModelError, Recent, Scoring, View};
 
-/// How many texts are computed at a time.
+/// The number of texts that are computed together.
 const BATCH: usize = 32;
 
-/// How many texts' vectors are kept: about 2 kB each.
+/// The number of texts for which vectors are kept, about 2 kB each.
 const KEPT_TEXTS: usize = 4 << 10;
 
-/// OWLv2. Features of pictures are kept, up to 256 MiB, and the vectors of texts too.
+/// OWLv2. The features of recent pictures are kept, in at most 256 MiB, and the vectors of recent texts.
 pub struct Owl {
     name: String,
     processor: Processor,
@@ -43,7 +43,7 @@ pub struct Owl {
     said: Recent<String, Tensor>,
 }
 
-/// What the network says of a picture, whatever the texts.
+/// The features of a picture: classes and boxes of its patches. They do not depend on the texts.
 struct Seen {
     classes: Classes,
     /// Centre, width and height, as shares of the square's edge.
@@ -80,7 +80,7 @@ impl Owl {
         let tokenizer = Tokenizer::load(folder)?;
         let weights = Weights::open(folder, device, precision)?;
         let (all, side) = (weights.scope(""), vision.image_size / vision.patch_size);
-        // For each patch a class, its shift and its scale, and a box.
+        // Each patch has a class vector, a shift and a scale, and the four numbers of a box.
         let picture_bytes = side * side * (said + 6) * size_of::<f32>();
         Ok(Self {
             name: name.to_owned(),
@@ -115,7 +115,7 @@ impl Owl {
         Ok(OwlOutputs { logits: self.logits(&seen, texts)?, boxes: seen.boxes.clone() })
     }
 
-    /// Where phrases are in a picture: for each of them the best places first.
+    /// Finds phrases in a picture: for each phrase its boxes, the best first.
     ///
     /// # Errors
     /// When the picture has no pixels, or the computation fails.
@@ -137,7 +137,7 @@ impl Owl {
         logits.map_err(|error| LocalError::compute(&self.name, &error))
     }
 
-    /// What the network says of a picture. It is computed once.
+    /// The features of a picture: kept ones, or else new ones, which are then kept.
     fn seen(&self, image: &Image) -> Result<Arc<Seen>, LocalError> {
         self.seen.get_or_make(digest(image), || {
             let picture = self.processor.tensor(image, &self.device)?;
@@ -152,7 +152,8 @@ impl Owl {
         Ok(Seen { classes: self.classes.of(&patches)?, boxes: self.boxes.of(&patches)? })
     }
 
-    /// The unit vectors of texts, in their order. Each is computed once, and those of similar length together.
+    /// The unit vectors of texts, in their order: kept ones, or else new ones. Texts of similar length are computed
+    /// together.
     fn said(&self, texts: &[&str]) -> Result<Vec<Arc<Tensor>>, LocalError> {
         let mut known: Vec<Option<Arc<Tensor>>> = texts.iter().map(|&text| self.said.get(&text.to_owned())).collect();
         let mut missing: Vec<(usize, Vec<u32>)> = Vec::new();
@@ -178,8 +179,8 @@ impl Owl {
     }
 }
 
-/// The text for a phrase: "a photo of a sink", as in the checkpoints' documentation. An article of the phrase's own is
-/// left out.
+/// The text for a phrase, as the documentation of the checkpoints recommends: "a photo of a sink". If the phrase has an
+/// article, it is left out.
 fn prompt(phrase: &str) -> String {
     let phrase = phrase.trim();
     let article = |(first, _): &(&str, &str)| ["a", "an", "the"].iter().any(|word| first.eq_ignore_ascii_case(word));

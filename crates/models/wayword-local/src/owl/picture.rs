@@ -1,9 +1,10 @@
-//! Turns pictures into OWLv2's numbers, as transformers' `Owlv2ImageProcessor` does.
+//! Prepares pictures for OWLv2. The numbers are those of transformers' `Owlv2ImageProcessor`.
 //!
-//! A picture becomes a square: black is added on the right or at the bottom. (Up to version 4 transformers added grey.)
-//! The square is resized to the model's edge by its nearest two pixels on each axis; a larger one is blurred first, by
-//! a Gaussian of (scale - 1) / 2 pixels that mirrors the picture at its edges. All of it is linear, so that each axis
-//! becomes one list of weights per new pixel, and the black is never made.
+//! The steps of the original: black is added at the right or at the bottom, so that the picture becomes a square. (Up
+//! to version 4 transformers added grey.) A square that is larger than the model's is blurred first. The blur is a
+//! Gaussian with a deviation of `(scale - 1) / 2` pixels, and mirrors the picture at its edges. Then each new pixel is
+//! interpolated between the two nearest ones on each axis. All these steps are linear. So here each new pixel of an axis
+//! has one list of weights, a window, and the black is never stored.
 
 use crate::{Device, LocalError, json};
 use candle_core::Tensor;
@@ -22,7 +23,7 @@ const DEVIATION: [f64; 3] = [0.26862954, 0.26130258, 0.27577711];
 pub(super) struct Processor {
     /// Width and height of the result, pixels.
     edge: usize,
-    /// The number of each byte before normalising.
+    /// The number for each value of a byte, before mean and deviation are applied.
     scaled: [f32; 256],
     mean: [f32; 3],
     deviation: [f32; 3],
@@ -55,7 +56,7 @@ struct Window {
 }
 
 impl Processor {
-    /// Reads `preprocessor_config.json` of a model that sees squares of `edge` pixels.
+    /// Reads `preprocessor_config.json` of a model that takes squares of `edge` pixels.
     pub(super) fn load(folder: &Path, edge: usize) -> Result<Self, LocalError> {
         let config: Config = json::read(folder, FILE, "the configuration of the pictures")?;
         config.processor(edge).map_err(|problem| LocalError::File {
@@ -75,7 +76,7 @@ impl Processor {
         Tensor::from_vec(self.numbers(image), shape, &device.0).map_err(|error| wrong(error.to_string()))
     }
 
-    /// The numbers of a picture: each colour's rows from the top.
+    /// The model's input for a picture: all rows of red, then green, then blue, from the top.
     fn numbers(&self, image: &Image) -> Vec<f32> {
         let (height, width, edge) = (image.height_px() as usize, image.width_px() as usize, self.edge);
         let square = height.max(width);
@@ -95,7 +96,7 @@ impl Processor {
         numbers
     }
 
-    /// A row of pixels, resized: all of its red, then green, then blue.
+    /// Resizes a row of pixels. The result has all of its red, then green, then blue.
     fn across(&self, row: &[u8], windows: &[Window]) -> Vec<f32> {
         let one = |colour: usize, window: &Window| {
             let old = row[window.start * 3..].chunks_exact(3).zip(&window.weights);
@@ -140,14 +141,15 @@ impl Config {
     }
 }
 
-/// One window for each of `to` new pixels of an axis of `from` old ones, all but the first `seen` of which are black.
+/// One window for each of `to` new pixels of an axis of `from` old ones. Only the first `seen` old pixels are the
+/// picture's, the others are black.
 fn windows(from: usize, to: usize, seen: usize) -> Vec<Window> {
     let scale = from as f64 / to as f64;
     let blur = gaussian((scale - 1.0) / 2.0);
     (0..to).map(|at| window(at, from, scale, &blur, seen)).collect()
 }
 
-/// The half of a Gaussian's weights from its middle on: 1 alone where nothing is blurred.
+/// The weights of a Gaussian from its middle outwards. A single 1 if `sigma` is 0, and there is no blur.
 fn gaussian(sigma: f64) -> Vec<f64> {
     let reach = if sigma > 0.0 { (3.0 * sigma).ceil() as usize } else { 0 };
     let half: Vec<f64> =
@@ -157,7 +159,7 @@ fn gaussian(sigma: f64) -> Vec<f64> {
 }
 
 fn window(at: usize, from: usize, scale: f64, blur: &[f64], seen: usize) -> Window {
-    // In 32 bits, as in PyTorch: far from the corner this rounds visibly.
+    // Computed in 32 bits, as in PyTorch. Far from the corner the rounding is visible.
     let centre = ((at as f32 + 0.5) * scale as f32 - 0.5).max(0.0);
     let first = (centre as usize).min(from - 1);
     let share = f64::from(centre - first as f32);
@@ -177,7 +179,7 @@ fn window(at: usize, from: usize, scale: f64, blur: &[f64], seen: usize) -> Wind
     Window { start: start.min(seen), weights: weights.into_iter().map(|weight| weight as f32).collect() }
 }
 
-/// A pixel beyond an edge as its mirror image; the edge's own pixel is not repeated.
+/// The pixel that a position beyond an edge mirrors. The pixel at the edge is not repeated.
 fn mirrored(at: i64, count: usize) -> usize {
     let period = (2 * (count as i64 - 1)).max(1);
     let at = at.rem_euclid(period);
@@ -243,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_told() {
+    fn processor_reports_settings_it_does_not_support() {
         let mut cases = vec![(sized(8), "sees 16 x 16")];
         for (key, value, told) in [
             ("image_processor_type", "CLIPImageProcessor".into(), "CLIPImageProcessor"),

@@ -1,4 +1,4 @@
-//! The configuration of a model's pictures.
+//! Reads `preprocessor_config.json`, which prescribes how pictures are resized, cropped and normalised.
 
 use super::{Processor, Size, resample::Filter};
 use crate::{LocalError, json};
@@ -31,7 +31,7 @@ pub(super) struct Config {
     image_std: Option<[f64; 3]>,
 }
 
-/// A size, in all forms that files use.
+/// A size, in any of the forms that files use.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum Edges {
@@ -40,7 +40,7 @@ enum Edges {
     One(usize),
 }
 
-/// The family of the processor.
+/// The family of the processor. CLIP and BLIP have different defaults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Maker {
     Clip,
@@ -75,7 +75,7 @@ impl Config {
         Ok(Processor { size, height_px, width_px, filter, numbers: self.numbers()? })
     }
 
-    /// The family. It is CLIP if the file does not say, as the oldest files do not.
+    /// The family. The oldest files do not name it, and are CLIP's.
     fn maker(&self) -> Result<Maker, String> {
         match self.image_processor_type.as_deref() {
             None => Ok(Maker::Clip),
@@ -85,7 +85,7 @@ impl Config {
         }
     }
 
-    /// How to resize, and the height and width of the output.
+    /// The rule for resizing, and the height and width of the output.
     fn sizes(&self, maker: Maker) -> Result<(Size, (usize, usize)), String> {
         let size = self.size.unwrap_or(match maker {
             Maker::Clip => Edges::Shortest { shortest_edge: 224 },
@@ -113,7 +113,7 @@ impl Config {
         Ok((size, (bounded(out.0)?, bounded(out.1)?)))
     }
 
-    /// The model's number for each value of a byte, for each colour.
+    /// The model's input for each value of a byte, for each colour.
     fn numbers(&self) -> Result<[[f32; 256]; 3], String> {
         let factor = if self.do_rescale == Some(false) { 1.0 } else { self.rescale_factor.unwrap_or(1.0 / 255.0) };
         let (mean, deviation) = match self.do_normalize {

@@ -1,4 +1,5 @@
-//! Pictures for detectors: resized by their short edge as a whole, and padded at the right and at the bottom.
+//! Prepares pictures for GLIP: the whole picture is resized until its short edge has a given length, and padded at the
+//! right and at the bottom.
 
 use super::resample::{Axis, Filter, resample};
 use crate::{Device, LocalError};
@@ -8,18 +9,19 @@ use wayword_core::Image;
 /// The largest edges that are accepted, pixels.
 const LARGEST: usize = 4096;
 
-/// Prepares pictures of any proportions.
+/// Prepares pictures of any proportions, without cropping.
 pub(crate) struct Edges {
     short: usize,
     long: usize,
     multiple: usize,
-    /// The colour (0 is red) of each channel, and the model's number for each of its bytes.
+    /// The colour (0 is red) of each channel, and the model's input for each value of its byte.
     channels: [(usize, [f32; 256]); 3],
 }
 
 impl Edges {
-    /// The short edge becomes `short`, or less where the long one would exceed `long`; then black is added until both are
-    /// multiples of `multiple`. `colours` are those of the channels; `mean` and `deviation` are of bytes.
+    /// The short edge becomes `short` pixels, or less where the long one would exceed `long`. Then zeros are added
+    /// until both are multiples of `multiple`. `colours` has the colour of each channel; `mean` and `deviation` are in
+    /// bytes.
     pub(crate) fn new(
         short: usize,
         long: usize,
@@ -33,7 +35,7 @@ impl Edges {
             return Err(LocalError::Compute { model: "pictures".to_owned(), problem });
         }
         let channel = |at: usize| {
-            // A byte goes through 0..1 and back, as in the original, which rounds twice.
+            // As in the original, a byte is scaled to 0..1 and back, which rounds twice.
             let number = |byte: usize| (byte as f32 / 255.0 * 255.0 - mean[at]) / deviation[at];
             (colours[at], std::array::from_fn(number))
         };
@@ -45,14 +47,14 @@ impl Edges {
         self.short.next_multiple_of(self.multiple) * self.long.next_multiple_of(self.multiple)
     }
 
-    /// Width and height of a picture of another size, in Python's arithmetic.
+    /// Width and height of a picture after it is resized, rounded as Python rounds them.
     fn size(&self, width: usize, height: usize) -> (usize, usize) {
         let (low, high) = (width.min(height).max(1), width.max(height).max(1));
         let mut short = self.short;
         if high as f64 / low as f64 * short as f64 > self.long as f64 {
             short = ((self.long * low) as f64 / high as f64).round_ties_even() as usize;
         }
-        // A line of pixels would become longer than the longest edge.
+        // A picture that is one pixel wide could otherwise exceed the longest edge.
         let short = short.max(1);
         let long = ((short * high) as f64 / low as f64) as usize;
         let long = long.min(self.long.next_multiple_of(self.multiple));
@@ -112,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn channels_are_turned_and_padding_is_nought() {
+    fn channels_are_reordered_and_padding_is_zero() {
         let edges = Edges::new(1, 1333, 4, [2, 1, 0], [0.0; 3], [1.0; 3]).unwrap();
         let image = Image::new(2, 1, vec![10, 20, 30, 40, 50, 60]).unwrap();
         let (pixels, size) = edges.tensor(&image, &Device::cpu()).unwrap();
@@ -126,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_that_cannot_be_are_refused() {
+    fn impossible_edges_are_refused() {
         for short in [0, 1334, 1 << 40] {
             assert!(Edges::new(short, 1333, 32, [0, 1, 2], [0.0; 3], [1.0; 3]).is_err());
         }

@@ -1,18 +1,18 @@
 //! Resizes pictures exactly as Pillow does, bit by bit.
 //!
-//! The fast libraries keep a filter's weights in 16 bits. They differ from Pillow by one in a few of a hundred pixels,
-//! and this changes the second digit of a model's numbers. Pillow's method is short: weights of 22 bits, first the
-//! rows, then the columns, and 8 bits in between. (`Resample.c` of Pillow 12: `precompute_coeffs`,
-//! `normalize_coeffs_8bpc`, `ImagingResampleInner`. Pillow 13 resizes the columns of some pictures first, so it rounds
-//! differently; the public checkpoints were made with earlier versions.)
+//! Fast libraries keep a filter's weights in 16 bits. Some percent of their pixels differ from Pillow's by one, and
+//! this changes the second digit of a model's outputs. Pillow's method is short: the weights have 22 bits, the rows are
+//! resized first, then the columns, and the numbers in between have 8 bits. (`Resample.c` of Pillow 12:
+//! `precompute_coeffs`, `normalize_coeffs_8bpc`, `ImagingResampleInner`. Pillow 13 resizes the columns of some pictures
+//! first, so it rounds differently; the public checkpoints were made with earlier versions.)
 
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Fraction bits of a weight.
+/// The number of fraction bits of a weight.
 const BITS: u32 = 32 - 8 - 2;
 
-/// How new pixels are interpolated.
+/// The rule by which new pixels are interpolated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Filter {
     /// From the two nearest pixels.
@@ -21,11 +21,11 @@ pub(crate) enum Filter {
     Bicubic,
 }
 
-/// How one axis of a picture is resized.
+/// The weights for resizing one axis of a picture.
 pub(crate) struct Axis {
-    /// Pixels before.
+    /// The number of old pixels.
     from: usize,
-    /// Pixels after.
+    /// The number of new pixels, with black ones.
     to: usize,
     /// The position of the first computed pixel. Everything before the first and after the last one is black.
     first: usize,
@@ -40,7 +40,7 @@ struct Window {
 }
 
 impl Filter {
-    /// How far it reaches, pixels.
+    /// The largest distance of an old pixel that counts, pixels of the coarser picture.
     fn reach(self) -> f64 {
         match self {
             Self::Bilinear => 1.0,
@@ -59,7 +59,7 @@ impl Filter {
         }
     }
 
-    /// The window of pixel `at` on an axis that is resized from `from` to `to` pixels.
+    /// The window of new pixel `at` on an axis that is resized from `from` to `to` pixels.
     fn window(self, at: usize, from: usize, to: usize) -> Window {
         if from == to {
             return Window { start: at, weights: vec![1 << BITS] };
@@ -82,8 +82,8 @@ impl Filter {
 }
 
 impl Axis {
-    /// An axis that is resized from `from` pixels to `to`, of which the middle `keep` are kept. If there are fewer,
-    /// black is added around them (transformers' `center_crop`). Only kept pixels are computed.
+    /// Resizes an axis from `from` pixels to `to`, and keeps the `keep` pixels in the middle. If there are fewer, black
+    /// is added around them (transformers' `center_crop`). Only kept pixels are computed.
     pub(crate) fn middle(filter: Filter, from: usize, to: usize, keep: usize) -> Self {
         let (kept, first): (Range<usize>, usize) = if to >= keep {
             let left = (to - keep) / 2;
@@ -94,7 +94,7 @@ impl Axis {
         Self { from, to: keep, first, windows: kept.map(|at| filter.window(at, from, to)).collect() }
     }
 
-    /// The old pixels that are used.
+    /// The range of old pixels that have a weight.
     fn seen(&self) -> Range<usize> {
         let start = self.windows.first().map_or(0, |window| window.start);
         let end = self.windows.iter().map(|window| window.start + window.weights.len()).max().unwrap_or(0);

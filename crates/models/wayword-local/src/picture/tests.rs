@@ -1,3 +1,5 @@
+//! Compares prepared pictures with Pillow and transformers (`fixtures/make_picture.py`).
+
 use super::*;
 use serde::Deserialize;
 
@@ -36,7 +38,7 @@ fn numbers(processor: &Processor, images: &[&Image]) -> Vec<f32> {
 }
 
 #[test]
-fn every_bit_is_pillows() {
+fn resampled_pixels_equal_pillows() {
     for Case { width, height, mut config, shape, sha256, .. } in cases() {
         config["do_rescale"] = false.into();
         config["do_normalize"] = false.into();
@@ -84,7 +86,7 @@ fn a_picture_without_pixels_is_refused() {
 }
 
 #[test]
-fn what_is_not_understood_is_told() {
+fn processor_reports_settings_it_does_not_support() {
     for (config, told) in [
         (serde_json::json!({ "image_processor_type": "ViTImageProcessor" }), "ViTImageProcessor"),
         (serde_json::json!({ "resample": 0 }), "resample: 0"),

@@ -1,4 +1,4 @@
-//! Attention within windows.
+//! Attention within windows: each place sees only the places of its own window.
 
 use super::windows::{Windows, distances};
 use crate::{
@@ -16,10 +16,10 @@ use rten_simd::SimdOp;
 use rten_tensor::NdTensorView;
 use rten_vecmath::Softmax;
 
-/// What is added to the score of two places that do not see each other.
+/// Added to the score of two places that do not see each other, so that its share becomes almost 0.
 const UNSEEN: f32 = -100.0;
 
-/// Attention within windows, with a bias by the distance of two places.
+/// Attention within windows, with a learned bias for the distance between two places.
 pub(super) struct WindowAttention {
     heads: usize,
     /// [heads, places, places].
@@ -43,8 +43,8 @@ impl WindowAttention {
         Ok(Self { heads, bias: spread().map_err(|error| weights.wrong(table, &error))? })
     }
 
-    /// From queries, keys and values [positions, 3 * channels] of a map, and those of padding [3 * channels], the states
-    /// [places, channels] in the order of the windows.
+    /// The states [places, channels] after attention, in the order of the windows. `qkv` has queries, keys and values
+    /// [positions, 3 * channels] of a map, and `of_padding` those of padding [3 * channels].
     pub(super) fn on_processor(&self, qkv: &Tensor, of_padding: &Tensor, windows: &Windows) -> Result<Tensor> {
         let width = qkv.dim(1)? / 3;
         let mut mixed = vec![0.0; windows.positions.len() * width];
@@ -96,7 +96,7 @@ struct Windowed<'a> {
 }
 
 impl Windowed<'_> {
-    /// The states of one window [places, channels]. `room` is memory to work in.
+    /// Writes the states [places, channels] of one window into `mixed`. `room` is memory to work in.
     fn one(&self, window: usize, mixed: &mut [f32], room: &mut Vec<f32>) -> Result<()> {
         let (size, width, row) = (self.windows.size, self.width, 3 * self.width);
         let head_width = width / self.heads;
@@ -130,7 +130,8 @@ impl Windowed<'_> {
         Ok(())
     }
 
-    /// Adds the biases of a head to the scores of a window, hides what is no neighbour, and makes each row sum to 1.
+    /// Adds the biases of a head to the scores of a window, hides places that are no neighbours on the map, and makes
+    /// each row sum to 1.
     fn softmax(&self, scores: &mut [f32], head: usize, regions: Option<&[u8]>) {
         let size = self.windows.size;
         let bias = &self.bias[head * size * size..(head + 1) * size * size];

@@ -1,4 +1,5 @@
-//! A block: attention within windows, then two layers for each position; a norm before each, a residual around each.
+//! A block of a Swin transformer: attention within windows, then two linear layers for each position. Both have a norm
+//! before them and a residual around them.
 
 use super::{
     attention::WindowAttention,
@@ -19,7 +20,7 @@ use candle_core::{Result, Tensor};
 pub(super) struct Block {
     mix_norm: LayerNorm,
     qkv: Linear,
-    /// Queries, keys and values of padding: the bias alone, because padding is 0.
+    /// The queries, keys and values of padding. Padding is 0, so they are the bias of the layer.
     of_padding: Tensor,
     attention: WindowAttention,
     mixed: Linear,
@@ -55,7 +56,7 @@ impl Block {
         })
     }
 
-    /// From x [batch, height, width, channels], the same shape.
+    /// The block's output for x [batch, height, width, channels]. The shape stays the same.
     pub(super) fn of(&self, x: &Tensor, windows: &Windows) -> Result<Tensor> {
         let (batch, height, width, channels) = x.dims4()?;
         let one = |at: usize| {
@@ -66,7 +67,7 @@ impl Block {
         Tensor::stack(&all, 0)?.reshape((batch, height, width, channels))
     }
 
-    /// With candle's operators, from x [positions, channels].
+    /// The output for x [positions, channels], with candle's operators.
     pub(super) fn on_device(&self, x: &Tensor, windows: &Windows) -> Result<Tensor> {
         let qkv = self.qkv.of(&self.mix_norm.of(x)?)?;
         let mixed = self.attention.on_device(&qkv, &self.of_padding, windows)?;
@@ -76,7 +77,8 @@ impl Block {
         self.narrow.of(&wide)? + x
     }
 
-    /// By tiles of positions, so that what is between two layers stays in the processor's cache.
+    /// The output for x [positions, channels] on the processor. A tile of positions at a time goes through the layers,
+    /// so that the numbers between two layers stay in the cache.
     fn on_processor(&self, x: &Tensor, windows: &Windows) -> Result<Tensor> {
         let (count, width) = x.dims2()?;
         let mut qkv = vec![0.0; count * 3 * width];
@@ -96,7 +98,7 @@ impl Block {
         Tensor::from_vec(y, (count, width), x.device())
     }
 
-    /// What follows attention: `mixed` in the order of the windows is put back into the order of the map.
+    /// The layers after attention. `mixed` is in the order of the windows, and is put back into the order of the map.
     fn think(&self, x: &[f32], mixed: &[f32], windows: &Windows, y: &mut [f32]) -> Result<()> {
         let width = x.len() / windows.places.len().max(1);
         each_tile(y, width, |from, y, memory| {

@@ -15,13 +15,13 @@ pub(crate) struct SwinConfig {
     pub(crate) window: usize,
     /// The width between the two layers of a block, as a multiple of the block's own.
     pub(crate) widening: usize,
-    /// The stages, from 0, whose outputs are the backbone's, through a norm each.
+    /// The stages, counted from 0, that give an output of the backbone. Each of these outputs has its own norm.
     pub(crate) outputs: Vec<usize>,
     /// Added to variances.
     pub(crate) epsilon: f64,
 }
 
-/// The most stages and blocks of a stage. Published models have 4 and 18.
+/// The most stages, and the most blocks of a stage. Published models have 4 and 18.
 const MOST_STAGES: usize = 8;
 const MOST_BLOCKS: usize = 64;
 
@@ -47,7 +47,7 @@ impl SwinConfig {
         self.width << stage
     }
 
-    /// What is wrong with the sizes, if anything is. Sizes without a problem are safe to compute with.
+    /// The problem with the sizes, if there is one. Sizes without a problem are safe to compute with.
     pub(crate) fn problem(&self) -> Option<String> {
         let sizes = [("width", self.width), ("window", self.window), ("widening", self.widening)];
         if let Some(problem) = size_problem(&sizes) {

@@ -1,4 +1,4 @@
-//! Between two stages: each square of four positions becomes one.
+//! Merges patches between two stages: each square of four positions becomes one position with twice the channels.
 
 use crate::{
     LocalError,
@@ -20,7 +20,7 @@ impl Merging {
         })
     }
 
-    /// From x [batch, height, width, channels], half the height and width (rounded up) and twice the channels. The
+    /// Halves height and width (rounded up) of x [batch, height, width, channels], and doubles the channels. The
     /// channels of a square are joined in the order upper left, lower left, upper right, lower right.
     pub(super) fn of(&self, x: &Tensor) -> Result<Tensor> {
         let (batch, height, width, channels) = x.dims4()?;

@@ -1,6 +1,8 @@
-//! Swin transformers: the backbones of GLIP and of Grounding DINO's family.
+//! Swin transformers (arXiv 2103.14030): the backbones of GLIP and of Grounding DINO's family.
 //!
-//! Features are channels-last, [batch, height, width, channels], because everything that follows wants them so.
+//! A picture is cut into patches of 4 x 4 pixels. In each block the patches of a small window attend to each other; the
+//! windows of every second block are shifted by half a window. Between stages, four neighbours become one. Features are
+//! channels-last, [batch, height, width, channels], as the layers that use them expect.
 
 mod attention;
 mod block;
@@ -23,7 +25,7 @@ use windows::Windows;
 /// Edge of a patch, pixels.
 const PATCH: usize = 4;
 
-/// A backbone: from pixels, features at several strides.
+/// A backbone: computes features of a picture at several strides.
 pub(crate) struct Swin {
     patch: Linear,
     patch_norm: LayerNorm,
@@ -33,13 +35,13 @@ pub(crate) struct Swin {
 
 struct Stage {
     blocks: Vec<Block>,
-    /// Of the stage's output, where it is one of the backbone's.
+    /// The norm of the stage's output, if it is an output of the backbone.
     out: Option<LayerNorm>,
     merging: Option<Merging>,
 }
 
 impl Swin {
-    /// Reads a backbone whose tensors have these names within a part of a checkpoint.
+    /// Reads a backbone from a part of a checkpoint, in which its tensors have these names.
     pub(crate) fn load(
         weights: &Scope<'_>,
         names: &Names,
@@ -58,8 +60,8 @@ impl Swin {
         })
     }
 
-    /// From pixels [batch, 3, height, width], the features [batch, height, width, channels] of each stage that is one
-    /// of the backbone's outputs, the finest first. Pixels are padded with zeros to whole patches.
+    /// The features [batch, height, width, channels] of pixels [batch, 3, height, width], after each stage that is an
+    /// output of the backbone, the finest first. Pixels are padded with zeros to whole patches.
     pub(crate) fn of(&self, pixels: &Tensor) -> Result<Vec<Tensor>> {
         let (batch, _, height, width) = pixels.dims4()?;
         let (down, across) = (height.div_ceil(PATCH), width.div_ceil(PATCH));
@@ -102,7 +104,7 @@ impl Stage {
 
     fn of(&self, x: Tensor, window: usize) -> Result<Tensor> {
         let (_, height, width, _) = x.dims4()?;
-        // Every second block looks through windows that are moved by half a window.
+        // The windows of every second block are shifted by half a window.
         let plain = Windows::new(height, width, window, 0);
         let moved = (self.blocks.len() > 1).then(|| Windows::new(height, width, window, window / 2));
         self.blocks.iter().enumerate().try_fold(x, |x, (at, block)| match &moved {

@@ -1,3 +1,5 @@
+//! Compares the backbone with transformers (`fixtures/make_swin.py`), and tests windows and sizes.
+
 use super::*;
 use crate::{Device, Precision, weights::Weights};
 use candle_core::safetensors;
@@ -34,7 +36,7 @@ fn every_map_is_that_of_transformers() {
 }
 
 #[test]
-fn on_any_other_device_it_would_be_the_same() {
+fn candles_operators_give_the_same_block() {
     let swin = load(&config()).unwrap();
     let positions = Tensor::arange(0_f32, 4.0 * 7.0 * 11.0, &candle_core::Device::Cpu).unwrap();
     let x = (positions.sin().unwrap()).reshape((77, 4)).unwrap();
@@ -48,7 +50,7 @@ fn on_any_other_device_it_would_be_the_same() {
 }
 
 #[test]
-fn windows_hold_each_position_once_and_keep_apart_what_is_not_near() {
+fn windows_contain_each_position_once_and_separate_distant_cells() {
     let windows = Windows::new(5, 4, 3, 1);
     assert_eq!((windows.count(), windows.size), (4, 9));
     for (position, &place) in windows.places.iter().enumerate() {
@@ -57,14 +59,14 @@ fn windows_hold_each_position_once_and_keep_apart_what_is_not_near() {
     let padding = windows.positions.iter().filter(|&&position| position == Windows::PAD).count();
     assert_eq!(padding, 36 - 20);
     assert!(windows.regions_of(0).is_none() && windows.regions_of(3).is_some());
-    // With one window alone the map is moved too, as in the original.
+    // A map that is a single window is moved too, as in the original.
     let one = Windows::new(3, 3, 3, 1);
     assert_eq!(one.positions, [4, 5, 3, 7, 8, 6, 1, 2, 0]);
     assert_eq!(one.regions, [4, 4, 5, 4, 4, 5, 7, 7, 8]);
 }
 
 #[test]
-fn sizes_that_cannot_be_are_told() {
+fn config_reports_impossible_sizes() {
     for (change, told) in [
         (SwinConfig { heads: vec![1, 2, 2, 3], ..config() }, "heads: 3"),
         (SwinConfig { heads: vec![1], ..config() }, "1 stages"),

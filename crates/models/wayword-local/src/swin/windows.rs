@@ -1,4 +1,4 @@
-//! How the positions of a map are put into windows.
+//! Divides the positions of a map into windows. A position is a cell of the map; a place is a cell of a window.
 
 /// The windows of a map, and where each position lies in them.
 pub(super) struct Windows {
@@ -6,19 +6,19 @@ pub(super) struct Windows {
     pub(super) positions: Vec<u32>,
     /// For each position on the map, its place in the windows.
     pub(super) places: Vec<u32>,
-    /// For each place, its region. Places of one window that are of different regions are not neighbours on the map,
-    /// and do not see each other. Empty where all are neighbours.
+    /// The region of each place. When windows are shifted, those at the edge contain cells from opposite sides of the
+    /// map. These cells have different regions, and do not see each other. Empty if windows are not shifted.
     pub(super) regions: Vec<u8>,
-    /// Places of a window.
+    /// The number of places of a window.
     pub(super) size: usize,
 }
 
 impl Windows {
-    /// Instead of a position: padding.
+    /// Marks a place that is padding, instead of a position.
     pub(super) const PAD: u32 = u32::MAX;
 
-    /// Windows of `edge` x `edge` positions of a map that is padded on the right and at the bottom to whole windows, and
-    /// then moved up and left by `by` positions. What leaves the map comes in on the other side.
+    /// Windows of `edge` x `edge` positions. The map is padded at the right and at the bottom to whole windows, and
+    /// then moved up and left by `by` positions. Cells that leave the map come in on the other side.
     pub(super) fn new(height: usize, width: usize, edge: usize, by: usize) -> Self {
         let (down, across) = (height.div_ceil(edge), width.div_ceil(edge));
         let (padded_height, padded_width) = (down * edge, across * edge);
@@ -45,19 +45,19 @@ impl Windows {
         Self { positions, places, regions, size: edge * edge }
     }
 
-    /// How many windows there are.
+    /// The number of windows.
     pub(super) fn count(&self) -> usize {
         self.positions.len() / self.size.max(1)
     }
 
-    /// The regions of the places of a window; none where all are neighbours.
+    /// The regions of the places of a window. `None` if all are neighbours on the map.
     pub(super) fn regions_of(&self, window: usize) -> Option<&[u8]> {
         let regions = self.regions.get(window * self.size..(window + 1) * self.size)?;
         regions.iter().any(|region| *region != regions[0]).then_some(regions)
     }
 }
 
-/// For each pair of places of a window (query, then key), the row of the table of biases: the rows are ordered by the
+/// For each pair of places of a window (query, then key), its row in the table of biases. The rows are ordered by the
 /// distance downwards, then by the distance to the right, each from `1 - edge` to `edge - 1`.
 pub(super) fn distances(edge: usize) -> Vec<usize> {
     let size = edge * edge;

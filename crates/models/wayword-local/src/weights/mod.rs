@@ -1,7 +1,7 @@
-//! Reads the weights of a checkpoint, tensor by tensor.
+//! Reads the weights of a checkpoint, tensor by tensor, from safetensors files or from pickled files of PyTorch.
 //!
-//! A file is never mapped into memory. Each tensor is converted for the computation as soon as it is read, so that only
-//! one tensor is in memory twice.
+//! A file is never mapped into memory. Each tensor is converted for the computation as soon as it is read, so that at
+//! most one tensor is in memory twice.
 
 mod pickle;
 mod pickled;
@@ -22,7 +22,7 @@ use std::{
 };
 use trained::Trained;
 
-/// Longest index of a checkpoint in several files, bytes.
+/// The longest index of a checkpoint in several files that is read, bytes.
 const LONGEST_INDEX: u64 = 64 << 20;
 
 /// A checkpoint's tensors by their names.
@@ -53,7 +53,7 @@ impl Weights {
     /// `pytorch_model.bin`.
     ///
     /// # Errors
-    /// When there is none of these, or one is damaged.
+    /// When none of these files exists, or one is damaged.
     pub(crate) fn open(folder: &Path, device: &Device, precision: Precision) -> Result<Self, LocalError> {
         let whole = folder.join("model.safetensors");
         let index = folder.join("model.safetensors.index.json");
@@ -75,7 +75,7 @@ impl Weights {
         Ok(Self::new(path, files, device, precision))
     }
 
-    /// Opens one file: `.safetensors`, or a checkpoint as training leaves it, of which the weights alone are read.
+    /// Opens one file: `.safetensors`, or a checkpoint as training leaves it. Only the weights of the latter are read.
     ///
     /// # Errors
     /// When it is missing or damaged.
@@ -97,7 +97,7 @@ impl Weights {
         Self { path, files, at, device: device.0.clone(), dtype: precision.dtype() }
     }
 
-    /// The tensors whose names begin with `prefix`; "" for all.
+    /// The tensors with names that begin with `prefix`, or all tensors for "".
     pub(crate) fn scope(&self, prefix: &str) -> Scope<'_> {
         Scope::new(self, prefix)
     }
@@ -116,7 +116,7 @@ impl Weights {
         self.at.contains_key(name)
     }
 
-    /// A tensor, whose shape is checked, at the weights' precision and on their device.
+    /// Reads a tensor, checks its shape, and converts it to the weights' precision and device.
     fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         let lacks = || LocalError::tensor(&self.path, name, "it is missing");
         let file = self.at.get(name).and_then(|&at| self.files.get(at)).ok_or_else(lacks)?;

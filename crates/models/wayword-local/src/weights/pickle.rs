@@ -1,21 +1,24 @@
-//! Reads the pickle of a PyTorch checkpoint as data: tables, lists, texts, numbers, and where tensors lie.
+//! Reads the pickle of a PyTorch checkpoint as data: tables, lists, texts, numbers, and the locations of tensors.
 //!
-//! Nothing is executed. Of the names that a pickle could call, four are known, and any other ends the reading.
+//! A pickle is a program for a small stack machine, and Python lets it call any function. Here only four names are
+//! known, and they are translated into data. Any other name ends the reading with an error. So a malicious file cannot
+//! execute code.
 
 mod machine;
 
 use machine::Machine;
 use std::{collections::BTreeMap, rc::Rc};
 
-/// A value of a pickle. Tables and lists are kept apart from it, because a pickle fills them after it has named them.
+/// A value of a pickle. A table is referred to by its number, because a pickle fills it after it has put it on the
+/// stack.
 #[derive(Debug, Clone)]
 pub(super) enum Value {
-    /// Anything that no tensor depends on.
+    /// A value that no tensor depends on, such as a float or a boolean.
     Other,
     Whole(i64),
     Text(Rc<str>),
     Tuple(Rc<Tuple>),
-    /// A list. What lists hold is not needed.
+    /// A list. Its values are not kept, because no tensor depends on them.
     List,
     /// A table, by its number.
     Table(usize),
@@ -28,11 +31,11 @@ pub(super) enum Value {
 #[derive(Debug)]
 pub(super) struct Tuple {
     values: Vec<Value>,
-    /// How deep tuples lie in tuples. It is bounded, because they are dropped one within the other.
+    /// The depth of nested tuples. It is bounded, because dropping them is recursive, and could exhaust the stack.
     depth: usize,
 }
 
-/// The names that a checkpoint may call.
+/// The functions and types that a checkpoint may name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Known {
     OrderedDict,
@@ -46,22 +49,22 @@ pub(super) enum Known {
 pub(super) struct Storage {
     /// The name of the file.
     pub(super) key: Rc<str>,
-    /// Whether they are floats of 32 bits, not whole numbers of 64.
+    /// Whether the numbers are floats of 32 bits. Otherwise they are whole numbers of 64 bits.
     pub(super) floats: bool,
     pub(super) count: u64,
 }
 
-/// Where a tensor lies.
+/// The location of a tensor: a part of a storage.
 #[derive(Debug)]
 pub(super) struct Place {
     pub(super) storage: Rc<Storage>,
-    /// In numbers.
+    /// The numbers of the storage before the tensor.
     pub(super) offset: u64,
     pub(super) shape: Vec<usize>,
     pub(super) strides: Vec<usize>,
 }
 
-/// The tables of a pickle, and what it describes.
+/// A pickle after it is read: its tables, and its top value, which is usually one of them.
 pub(super) struct Pickle {
     tables: Vec<BTreeMap<Rc<str>, Value>>,
     top: Value,
@@ -71,14 +74,14 @@ impl Pickle {
     /// Reads a pickle.
     ///
     /// # Errors
-    /// Says what is wrong with it.
+    /// The problem with the pickle.
     pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let mut machine = Machine::new(bytes);
         let top = machine.run()?;
         Ok(Self { tables: machine.tables, top })
     }
 
-    /// The tensors of the table under a key of the top table, by their names.
+    /// The tensors, with their names, of the table that the top table has under `key`.
     pub(super) fn tensors(&self, key: &str) -> Result<impl Iterator<Item = (Rc<str>, Rc<Place>)>, String> {
         let Value::Table(top) = self.top else { return Err("it does not hold a table".to_owned()) };
         let model = match self.tables.get(top).and_then(|top| top.get(key)) {

@@ -1,6 +1,6 @@
-//! A checkpoint that PyTorch pickled. Some public checkpoints have no other form.
+//! Reads `pytorch_model.bin`, a checkpoint that PyTorch pickled. Some public checkpoints have no other form.
 //!
-//! candle reads the pickle as data; nothing in it is executed.
+//! candle reads the pickle as data, and executes no code in it.
 
 use crate::{LocalError, error::FETCH_AGAIN};
 use candle_core::{Tensor, pickle::PthTensors};

@@ -1,4 +1,4 @@
-//! One safetensors file.
+//! Reads one safetensors file: a JSON header with names, types, shapes and offsets, then the bytes of the tensors.
 
 use crate::{LocalError, error::FETCH_AGAIN};
 use candle_core::{DType, Device, Tensor};
@@ -13,7 +13,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// Longest header, bytes: the format's own limit.
+/// The longest header, bytes. This is the limit of the format.
 const LONGEST_HEADER: u64 = 100_000_000;
 
 /// An open file with its header.
@@ -26,7 +26,7 @@ pub(super) struct SafeFile {
 }
 
 impl SafeFile {
-    /// Opens a file and reads its header, which has to match the file's length.
+    /// Opens a file and reads its header, which must agree with the file's length.
     pub(super) fn open(path: &Path) -> Result<Self, LocalError> {
         let io = |error| LocalError::io(path, "read", error);
         let damaged = |problem: String| LocalError::File {

@@ -1,4 +1,5 @@
-//! A part of a checkpoint: the tensors whose names begin with a prefix.
+//! A part of a checkpoint: the tensors that share a prefix of their names, such as `encoder.layer.3`. Layers are read
+//! from it.
 
 use super::Weights;
 use crate::{
@@ -7,7 +8,7 @@ use crate::{
 };
 use candle_core::{DType, Tensor};
 
-/// The tensors whose names begin with a prefix.
+/// The tensors of a checkpoint with names that begin with a prefix.
 #[derive(Clone)]
 pub(crate) struct Scope<'a> {
     weights: &'a Weights,
@@ -19,7 +20,7 @@ impl<'a> Scope<'a> {
         Self { weights, prefix: prefix.to_owned() }
     }
 
-    /// The part with this name within this part, or with a layer's number.
+    /// The part with this name, or with the number of a layer, within this part.
     pub(crate) fn sub(&self, name: impl std::fmt::Display) -> Self {
         Self { weights: self.weights, prefix: self.name(&name.to_string()) }
     }
@@ -33,13 +34,13 @@ impl<'a> Scope<'a> {
         self.weights.has(&self.name(name))
     }
 
-    /// A tensor, whose shape is checked.
+    /// Reads a tensor, and checks its shape.
     pub(crate) fn tensor(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         self.weights.tensor(&self.name(name), shape)
     }
 
-    /// A tensor that is added to the model's states, which have 32 bits on the CPU, whatever the precision of the
-    /// weights. Its shape is checked.
+    /// Reads a tensor that is added to the model's states, and checks its shape. States have 32 bits on the CPU,
+    /// whatever the precision of the weights, so this tensor has too.
     pub(crate) fn state(&self, name: &str, shape: &[usize]) -> Result<Tensor, LocalError> {
         let tensor = self.tensor(name, shape)?;
         if !tensor.device().is_cpu() {
@@ -48,7 +49,7 @@ impl<'a> Scope<'a> {
         tensor.to_dtype(DType::F32).map_err(|error| self.wrong(name, &error))
     }
 
-    /// `weight` [outputs, inputs] and, if there is one, `bias` [outputs] of a layer.
+    /// Reads a linear layer: `weight` [outputs, inputs] and, if there is one, `bias` [outputs].
     pub(crate) fn linear(&self, layer: &str, inputs: usize, outputs: usize) -> Result<Linear, LocalError> {
         let layer = self.sub(layer);
         let weight = layer.tensor("weight", &[outputs, inputs])?;
@@ -56,7 +57,8 @@ impl<'a> Scope<'a> {
         Linear::new(&weight, bias).map_err(|error| layer.wrong("weight", &error))
     }
 
-    /// Several layers with the same input as one layer, with their outputs side by side.
+    /// Reads several layers with the same input as one layer, with their outputs side by side. One large product is
+    /// faster than several small ones.
     pub(crate) fn linears(&self, layers: &[&str], inputs: usize, outputs: usize) -> Result<Linear, LocalError> {
         let read = |name: &str, shape: &[usize]| -> Result<Vec<Tensor>, LocalError> {
             layers.iter().map(|layer| self.sub(layer).tensor(name, shape)).collect()
@@ -68,23 +70,23 @@ impl<'a> Scope<'a> {
         Linear::new(&weight, bias).map_err(wrong)
     }
 
-    /// `weight` and `bias` [size] of a layer norm.
+    /// Reads a layer norm: `weight` and `bias` [size].
     pub(crate) fn layer_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<LayerNorm, LocalError> {
         let layer = self.sub(layer);
         Ok(LayerNorm::new(layer.tensor("weight", &[size])?, layer.tensor("bias", &[size])?, epsilon))
     }
 
-    /// `weight` [size] of a root-mean-square norm.
+    /// Reads a root-mean-square norm: `weight` [size].
     pub(crate) fn rms_norm(&self, layer: &str, size: usize, epsilon: f64) -> Result<RmsNorm, LocalError> {
         Ok(RmsNorm::new(self.sub(layer).tensor("weight", &[size])?, epsilon))
     }
 
-    /// `weight` [count, size] of a table that is looked up by ids.
+    /// Reads a table that is looked up by ids: `weight` [count, size].
     pub(crate) fn embedding(&self, layer: &str, count: usize, size: usize) -> Result<Embedding, LocalError> {
         Ok(Embedding::new(self.sub(layer).tensor("weight", &[count, size])?))
     }
 
-    /// The error of a failed computation with a tensor.
+    /// The error for a failed computation with a tensor.
     pub(crate) fn wrong(&self, name: &str, error: &candle_core::Error) -> LocalError {
         LocalError::tensor(&self.weights.path, self.name(name), error.to_string())
     }

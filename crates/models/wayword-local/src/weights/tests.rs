@@ -1,3 +1,5 @@
+//! Tests safetensors files and folders of checkpoints, whole, damaged and malicious.
+
 use super::*;
 use candle_core::Device as On;
 use std::collections::HashMap;
@@ -50,7 +52,7 @@ fn a_file_that_is_cut_off_anywhere_is_refused() {
 }
 
 #[test]
-fn a_header_that_lies_about_its_length_allocates_nothing() {
+fn a_header_with_a_false_length_is_refused_without_allocating() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("model.safetensors");
     for size in [u64::MAX, 99_000_000, 9] {
@@ -71,7 +73,7 @@ fn parts_may_not_lie_outside_the_folder() {
 }
 
 #[test]
-fn a_folder_without_a_checkpoint_says_what_belongs_there() {
+fn opening_a_folder_without_a_checkpoint_names_the_missing_file() {
     let folder = tempfile::tempdir().unwrap();
     let error = open(folder.path()).err().expect("it is refused").to_string();
     assert!(error.contains("model.safetensors") && error.contains("models fetch"), "{error}");

@@ -1,4 +1,6 @@
-//! A checkpoint as training leaves it: an archive with a pickle, of which the weights under `model` alone are read.
+//! Reads a checkpoint as training leaves it (`.pth`): a zip archive with a pickle, which describes the tensors, and one
+//! entry for the numbers of each storage. Only the weights are read, which are under the key `model`; the state of the
+//! optimiser is left out.
 
 use super::pickle::Pickle;
 use crate::{LocalError, error::FETCH_AGAIN};
@@ -12,30 +14,30 @@ use std::{
 };
 use zip::{CompressionMethod, ZipArchive};
 
-/// The table of the weights.
+/// The key of the table with the weights.
 const WEIGHTS: &str = "model";
 
-/// What the names of the weights begin with, if they were trained on several devices.
+/// The prefix of the names of weights that were trained on several devices.
 const BEGIN: &str = "module.";
 
-/// Longest pickle, bytes. It has no numbers of tensors.
+/// The longest pickle that is read, bytes. The numbers of tensors are not in it.
 const LONGEST_PICKLE: u64 = 32 << 20;
 
-/// An open archive, and where its weights lie.
+/// An open archive, and the locations of its weights.
 pub(super) struct Trained {
     path: PathBuf,
     archive: Mutex<ZipArchive<BufReader<File>>>,
-    /// The folder of the archive.
+    /// The name of the folder within the archive.
     root: String,
     tensors: BTreeMap<String, Lies>,
     length: u64,
 }
 
-/// Where a tensor lies: numbers of an entry of the archive.
+/// The location of a tensor: a part of the numbers of an entry of the archive.
 struct Lies {
     entry: String,
     dtype: DType,
-    /// Numbers of the entry, and those before the tensor.
+    /// How many numbers the entry has, and how many of them come before the tensor.
     count: u64,
     offset: u64,
     shape: Vec<usize>,
@@ -118,7 +120,7 @@ impl Trained {
             // The length was checked against that of the file.
             let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
             Read::take(&mut read, length).read_to_end(&mut bytes).map_err(told)?;
-            // At the end of an entry its checksum is compared.
+            // Reading to the end of the entry makes the archive reader compare the checksum.
             let more = if from + length == whole { io::copy(&mut read, &mut io::sink()).map_err(told)? } else { 0 };
             if bytes.len() as u64 == length && more == 0 { Ok(bytes) } else { Err("it is cut off".to_owned()) }
         })
@@ -126,7 +128,8 @@ impl Trained {
 }
 
 impl Lies {
-    /// The bytes of the entry that are the tensor's: where they begin, and how many they are.
+    /// The position of the tensor's first byte in the entry, and the number of its bytes. `file` is the length of the
+    /// file.
     fn range(&self, file: u64) -> Result<(u64, u64), String> {
         let numbers = self.shape.iter().try_fold(1_u64, |product, &length| product.checked_mul(length as u64));
         let size = self.dtype.size_in_bytes() as u64;
@@ -155,7 +158,8 @@ struct Entry<'a> {
     read: &'a mut dyn Read,
 }
 
-/// Calls `then` with an entry that is not compressed: PyTorch compresses none, and so none can be larger than the file.
+/// Calls `then` with an entry of the archive. A compressed entry is refused: PyTorch compresses none, and one could
+/// unpack to more bytes than the memory holds.
 fn entry<T>(
     archive: &mut ZipArchive<BufReader<File>>,
     name: &str,

@@ -66,7 +66,7 @@ fn damaged(file: &str, change: impl FnOnce(Vec<u8>) -> Vec<u8>) -> String {
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     let cut = damaged("model.safetensors", |bytes| bytes[..bytes.len() / 2].to_vec());
     assert!(cut.contains("model.safetensors") && cut.contains("bytes"), "{cut}");
     let resized = damaged("config.json", |bytes| {

@@ -48,7 +48,7 @@ fn captions_agree_with_pytorch_token_for_token() {
 }
 
 #[test]
-fn a_caption_is_cut_where_it_is_told_to() {
+fn a_caption_ends_at_the_requested_length() {
     let expected: Captions = expected("blip_caption");
     let blip = captioner(&fixture("blip_caption")).unwrap();
     let cut = blip.tokens(&drawn(expected.size), "", 2).unwrap();
@@ -121,7 +121,7 @@ fn replaced(from: &'static str, to: &'static str) -> impl FnOnce(Vec<u8>) -> Vec
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     let cut = damaged("blip_vqa", "model.safetensors", |bytes| bytes[..bytes.len() / 2].to_vec(), vqa);
     assert!(cut.contains("model.safetensors") && cut.contains("bytes"), "{cut}");
     let wider = damaged("blip_vqa", "config.json", replaced("\"patch_size\": 8", "\"patch_size\": 4"), vqa);
@@ -139,7 +139,7 @@ fn damage_is_told_by_file_and_tensor() {
 }
 
 #[test]
-fn words_attend_to_states_of_the_vision_models_width_whatever_the_text_model_is_said_to_expect() {
+fn text_config_cannot_change_the_width_of_vision_states() {
     let expected: Captions = expected("blip_caption");
     for said in ["\"encoder_hidden_size\": 768", "\"encoder_hidden_width\": 30"] {
         let change = replaced("\"encoder_hidden_size\": 30", said);
@@ -149,7 +149,7 @@ fn words_attend_to_states_of_the_vision_models_width_whatever_the_text_model_is_
 }
 
 #[test]
-fn one_that_describes_is_not_taken_for_one_that_answers() {
+fn a_describing_checkpoint_does_not_load_as_an_answering_one() {
     let error = refused(vqa(&fixture("blip_caption")));
     assert!(error.contains("text_encoder.") && error.contains("missing"), "{error}");
 }

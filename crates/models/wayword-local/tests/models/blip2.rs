@@ -31,7 +31,7 @@ fn expected(name: &str) -> Expected {
 }
 
 #[test]
-fn what_is_seen_and_said_agrees_with_pytorch() {
+fn queries_and_answers_agree_with_pytorch() {
     for name in BOTH {
         let (blip2, expected) = (load(&fixture(name)).unwrap(), expected(name));
         let picture = drawn(expected.size);
@@ -74,7 +74,7 @@ fn changed(name: &str, from: &str, to: &str) -> String {
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     for (name, from, to, told) in [
         (
             "blip2_t5",

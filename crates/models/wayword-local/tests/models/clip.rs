@@ -74,7 +74,7 @@ fn texts_agree_where_the_configuration_names_the_wrong_end() {
     set(folder.path(), "config.json", "/text_config/eos_token_id", 2.into());
     let clip = load(folder.path()).unwrap();
     texts_agree(&clip, &expected().legacy);
-    // The two rules differ for a text with a token whose id is higher than the end token's.
+    // The two rules differ for a text with a token that has a higher id than the end token.
     let (now, then) = (expected().texts.pop().unwrap().vector, expected().legacy.pop().unwrap().vector);
     assert!(now.iter().zip(&then).any(|(a, b)| (a - b).abs() > 1e-3));
 }
@@ -108,7 +108,7 @@ fn a_score_is_the_cosine_of_picture_and_phrase() {
 }
 
 #[test]
-fn it_is_known_which_texts_are_cut_off() {
+fn grounder_knows_which_texts_are_cut_off() {
     let grounder = ClipGrounder::new(load(&fixture("clip")).unwrap());
     // The model reads 18 tokens, of which two are the ends; a letter is a token here.
     let held = ["a b c d e f g h i j k l m n o p", "a b c d e f g h i j k l m n o p q"];
@@ -134,7 +134,7 @@ fn a_view_without_a_picture_does_not_fail_the_others() {
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     for (file, place, value, told) in [
         ("config.json", "/model_type", "blip".into(), vec!["config.json", "blip is not clip"]),
         ("config.json", "/vision_config/hidden_size", 27.into(), vec!["vision_model.embeddings.", "[24, 3, 8, 8]"]),

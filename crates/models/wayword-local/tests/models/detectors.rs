@@ -32,7 +32,7 @@ fn view(shade: u8) -> View {
 }
 
 #[test]
-fn a_detectors_answers_are_kept_by_view_and_phrase() {
+fn answers_are_stored_by_view_and_phrase() {
     let folder = tempfile::tempdir().unwrap();
     let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
     let (first, second) = (run(&ledger, "first"), run(&ledger, "second"));
@@ -69,7 +69,7 @@ fn a_detector_is_loaded_once_and_looked_for_without_loading() {
 }
 
 #[test]
-fn what_does_not_detect_is_told_before_it_is_loaded() {
+fn a_model_that_is_no_detector_is_refused_before_loading() {
     let folder = tempfile::tempdir().unwrap();
     let ledger = Ledger::open(&folder.path().join("ledger.db")).unwrap();
     let models = models(run(&ledger, "run"), None, None);

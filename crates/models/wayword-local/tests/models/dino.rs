@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, path::Path};
 use wayword_core::{Detector, Found, Image, ModelError, View};
 use wayword_local::{Device, Dino, LocalError, Precision};
 
-/// With heads of their own for the two layers of the decoder, and with shared ones.
+/// The fixtures: one with separate heads for the two layers of the decoder, and one with shared heads.
 const MODELS: [&str; 2] = ["dino_mm", "dino"];
 
 fn load(folder: &Path) -> Result<Dino, LocalError> {
@@ -91,7 +91,7 @@ fn scores_and_boxes_agree_with_pytorch() {
 }
 
 #[test]
-fn what_is_easily_done_wrongly_is_not() {
+fn outputs_differ_from_those_of_likely_mistakes() {
     let mut traps = Vec::new();
     for name in MODELS {
         let (dino, expected) = (load(&fixture(name)).unwrap(), expected(name));
@@ -120,13 +120,13 @@ fn the_configuration_switches_heads_and_the_dot_product() {
     };
     let shared = with(&[("/decoder_bbox_embed_share", true.into()), ("/decoder_cls_embed_share", true.into())]);
     agree(&shared, &expected.wrong["shared"].found(), "shared heads");
-    // The last layer's heads stand under the same names in both families.
+    // The last layer's heads have the same names in both families.
     let plain = with(&[("/model_type", "grounding-dino".into())]);
     agree(&plain, &expected.wrong["scale"].found(), "plain dot product");
 }
 
 #[test]
-fn heads_may_stand_in_the_decoder() {
+fn heads_are_also_found_in_the_decoder() {
     let (folder, expected) = (copy("dino"), expected("dino"));
     let file = folder.path().join("model.safetensors");
     let tensors = candle_core::safetensors::load(&file, &candle_core::Device::Cpu).unwrap();
@@ -197,7 +197,7 @@ fn sixteen_bits_come_near() {
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     let mut untold = Vec::new();
     let huge = serde_json::Value::from(1_u64 << 60);
     for (file, place, value, told) in [

@@ -53,7 +53,7 @@ fn agrees(glip: &Glip, case: &Case, expected: &HashMap<String, Tensor>, at: &str
 }
 
 #[test]
-fn what_the_head_says_is_the_oracles() {
+fn head_outputs_agree_with_the_oracle() {
     let expected = expected();
     for (at, case) in cases().iter().enumerate() {
         agrees(&load_from(&fixture("glip"), case.short).unwrap(), case, &expected, &at.to_string());
@@ -61,7 +61,7 @@ fn what_the_head_says_is_the_oracles() {
 }
 
 #[test]
-fn no_trap_is_fallen_into() {
+fn outputs_differ_from_those_of_likely_mistakes() {
     // The oracle with each trap gives other logits, from which we are far.
     let expected = expected();
     for (at, case) in cases().iter().enumerate() {
@@ -75,7 +75,7 @@ fn no_trap_is_fallen_into() {
 }
 
 #[test]
-fn boxes_and_scores_are_the_oracles() {
+fn boxes_and_scores_agree_with_the_oracle() {
     for case in cases() {
         let glip = load_from(&fixture("glip"), case.short).unwrap();
         let found = glip.find(&drawn(case.size), &case.phrases()).unwrap();
@@ -90,7 +90,7 @@ fn boxes_and_scores_are_the_oracles() {
     }
 }
 
-/// Remembers what was told.
+/// Collects the notes for the user.
 #[derive(Default)]
 struct Notes(std::sync::Mutex<Vec<String>>);
 
@@ -103,7 +103,7 @@ impl Progress for Notes {
 }
 
 #[test]
-fn a_file_is_found_by_its_name_and_the_licence_is_told() {
+fn files_are_found_by_name_and_the_licence_is_noted() {
     let cache = tempfile::tempdir().unwrap();
     let mut config = HubConfig::new(cache.path().to_owned());
     config.offline = true;
@@ -183,7 +183,7 @@ fn changed(place: &str, value: serde_json::Value) -> tempfile::TempDir {
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     for (place, value, told) in [
         ("/model_type", "blip".into(), vec!["config.json", "blip is not glip"]),
         (

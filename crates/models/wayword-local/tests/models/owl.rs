@@ -65,7 +65,7 @@ fn logits_and_boxes_agree_with_pytorch() {
 }
 
 #[test]
-fn no_known_mistake_is_made() {
+fn outputs_differ_from_those_of_known_mistakes() {
     let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let ours = owl.outputs(&drawn(expected.pictures[1].size), &expected.texts()).unwrap();
     assert_eq!(expected.traps.len(), 8);
@@ -80,7 +80,7 @@ fn a_text_scores_the_same_alone_and_among_others() {
     let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let OfPicture { size, numbers } = &expected.pictures[0];
     for (text, logits) in expected.texts.iter().zip(&numbers.logits).rev() {
-        // Another model, so that nothing was computed before.
+        // Another instance, which has no kept vectors.
         let alone = load(&fixture("owl")).unwrap().outputs(&drawn(*size), &[text]).unwrap();
         let kept = owl.outputs(&drawn(*size), &[text]).unwrap();
         for ours in [alone, kept] {
@@ -92,7 +92,7 @@ fn a_text_scores_the_same_alone_and_among_others() {
 }
 
 #[test]
-fn what_is_found_is_a_score_and_a_box_in_the_pictures_own_pixels() {
+fn finds_have_a_score_and_a_box_in_picture_pixels() {
     let (owl, expected) = (load(&fixture("owl")).unwrap(), Expected::read(&fixture("owl")));
     let OfPicture { size: (width, height), numbers } = &expected.pictures[1];
     let shown = view(Some(drawn((*width, *height))));
@@ -140,7 +140,7 @@ fn sixteen_bits_come_near() {
 }
 
 #[test]
-fn damage_is_told_by_file_and_tensor() {
+fn load_names_the_damaged_file_and_tensor() {
     let weights = "model.safetensors";
     for (file, place, value, told) in [
         ("config.json", "/model_type", "clip".into(), vec!["config.json", "clip is not owlv2"]),

@@ -1,4 +1,4 @@
-//! The pass on the processor against candle's operators.
+//! Compares the pass on the processor with candle's operators.
 
 use super::*;
 use candle_core::Device;
@@ -11,7 +11,7 @@ fn random(shape: &[usize], seed: u64, scale: f32) -> Tensor {
 }
 
 #[test]
-fn one_pass_agrees_with_gathers() {
+fn processor_pass_agrees_with_candles_operators() {
     let levels = [Level { height: 5, width: 7 }, Level { height: 2, width: 3 }, Level { height: 1, width: 1 }];
     let shape = Sampling { heads: 2, levels: 3, points: 2 };
     let values = random(&[35 + 6 + 1, 8], 1, 1.0);
@@ -30,7 +30,7 @@ fn one_pass_agrees_with_gathers() {
 }
 
 #[test]
-fn places_that_are_no_numbers_count_nothing() {
+fn samples_at_infinite_or_nan_positions_are_zero() {
     let level = [Level { height: 2, width: 2 }];
     let shape = Sampling { heads: 1, levels: 1, points: 1 };
     let values = random(&[4, 2], 1, 1.0);

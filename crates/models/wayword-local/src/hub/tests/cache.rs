@@ -1,4 +1,4 @@
-//! The layout of the cache, and when the hub is asked.
+//! Tests the layout of the cache, and when the hub is asked.
 
 use super::{
     fake::{COMMIT, FakeHub, bytes, git, model, sha256},
@@ -38,7 +38,7 @@ fn the_cache_has_the_layout_of_the_hubs_own_client() {
 }
 
 #[test]
-fn what_is_in_the_cache_is_used_until_it_is_fetched_anew() {
+fn cached_files_are_used_until_a_new_fetch() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(model());
     let hub = fake.client(cache.path());
@@ -88,7 +88,7 @@ fn a_fetch_that_fails_leaves_the_older_snapshot_in_use() {
 }
 
 #[test]
-fn without_links_snapshots_hold_copies() {
+fn without_links_snapshots_contain_copies() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(model());
     let hub = Hub::new(HubConfig { symlinks: false, ..fake.config(cache.path()) }).unwrap();
@@ -151,7 +151,7 @@ fn a_gguf_name_fetches_that_file_alone() {
 }
 
 #[test]
-fn the_list_tells_models_commits_and_lengths() {
+fn list_has_models_with_commits_and_lengths() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(model());
     let hub = fake.client(cache.path());
@@ -168,7 +168,7 @@ fn the_list_tells_models_commits_and_lengths() {
 }
 
 #[test]
-fn files_are_held_against_both_kinds_of_hash() {
+fn files_are_compared_with_both_kinds_of_hash() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "hello\n").unwrap();
@@ -183,7 +183,7 @@ fn files_are_held_against_both_kinds_of_hash() {
 }
 
 #[test]
-fn what_is_no_hash_is_refused() {
+fn etags_that_are_no_hash_are_refused() {
     let etags = ["", "\"\"", "abc", "../../etc/passwd", "5D41402ABC4B2A76B9719D911017C592AAAAAAAA", "bb-bWMd8e2"];
     for etag in etags {
         assert_eq!(BlobHash::from_etag(etag), None, "{etag}");

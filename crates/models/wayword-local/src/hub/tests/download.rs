@@ -1,4 +1,4 @@
-//! Downloads over connections that break, and from servers with wrong answers.
+//! Tests downloads over connections that break, and from servers with wrong answers.
 
 use super::{
     fake::{COMMIT, FakeHub, Fault, TOKEN, bytes, fine, model, sha256},
@@ -90,7 +90,7 @@ fn a_later_command_goes_on_where_an_earlier_one_was_killed() {
 }
 
 #[test]
-fn what_was_left_whole_is_only_checked() {
+fn a_complete_partial_file_is_only_checked() {
     let cache = tempfile::tempdir().unwrap();
     fs::create_dir_all(incomplete(cache.path()).parent().unwrap()).unwrap();
     fs::write(incomplete(cache.path()), bytes(3 << 20)).unwrap();
@@ -148,7 +148,7 @@ fn bytes_of_another_hash_never_reach_a_snapshot() {
 }
 
 #[test]
-fn more_than_was_announced_is_not_taken() {
+fn bytes_beyond_the_announced_size_are_refused() {
     let cache = tempfile::tempdir().unwrap();
     let fake = store_fault(|_| Some(Reply::new(200, Vec::new(), bytes((3 << 20) + 1))));
     let problem = problem(&fake.client(cache.path()), "hf/org/name");
@@ -168,7 +168,7 @@ fn a_server_that_breaks_off_for_ever_is_given_up() {
 }
 
 #[test]
-fn two_at_a_time_fetch_a_file_once() {
+fn two_concurrent_fetches_download_a_file_once() {
     struct Seen(Mutex<Vec<(String, u64)>>);
     impl Progress for Seen {
         fn bytes(&self, file: &str, done: u64, _: Option<u64>) {
@@ -219,7 +219,7 @@ fn a_model_that_was_renamed_is_found_under_its_new_name() {
 }
 
 #[test]
-fn answers_that_name_no_commit_or_hash_are_none_of_a_hub() {
+fn answers_without_a_commit_or_a_hash_are_refused() {
     let (commit, etag) = (("X-Repo-Commit", COMMIT.to_owned()), ("ETag", "\"abc\"".to_owned()));
     let other = ("X-Repo-Commit", "../../etc".to_owned());
     let whole = ("ETag", format!("\"{}\"", super::fake::git(b"{}")));
@@ -246,7 +246,7 @@ fn an_answer_of_another_commit_than_asked_is_refused() {
 }
 
 #[test]
-fn a_machine_that_is_not_there_is_told_with_what_to_do() {
+fn an_unreachable_machine_is_reported_with_a_hint() {
     // A port that was free a moment ago.
     let endpoint = format!("http://{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
     let cache = tempfile::tempdir().unwrap();

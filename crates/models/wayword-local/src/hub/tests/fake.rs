@@ -15,7 +15,7 @@ pub(super) const TOKEN: &str = "hf_test_0123456789";
 /// The commit that `main` points to at first.
 pub(super) const COMMIT: &str = "0123456789abcdef0123456789abcdef01234567";
 
-/// What a server answers instead of the right answer, by the number of earlier requests.
+/// The faulty answer that a server gives instead of the right one, by the number of earlier requests.
 pub(super) type Fault = Box<dyn Fn(usize, &Request) -> Option<Reply> + Send + Sync>;
 
 pub(super) struct FakeHub {

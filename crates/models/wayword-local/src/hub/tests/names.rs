@@ -1,4 +1,4 @@
-//! Names of models, which become paths and addresses, and the addresses that a redirect may lead to.
+//! Tests the names of models, which become paths and addresses, and the addresses that a redirect may lead to.
 
 use crate::hub::{
     ModelName,
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use std::path::{Component, Path};
 
 #[test]
-fn names_say_where_a_model_is() {
+fn parse_finds_the_place_of_a_model() {
     let hub = |text: &str| match ModelName::parse(text).unwrap().source {
         ModelSource::Hub(model) => (model.org, model.name, model.revision, model.file.unwrap_or_default()),
         other => panic!("{text}: {other:?}"),
@@ -109,7 +109,7 @@ fn redirects_lead_within_the_host_or_elsewhere_but_never_from_https_to_http() {
 }
 
 #[test]
-fn an_endpoint_that_is_none_is_not_repeated() {
+fn error_does_not_repeat_an_invalid_endpoint() {
     for text in ["", "huggingface.co", "https://me:hunter2@host", "https://host/?q", "https://host/#x", "http://"] {
         let problem = Address::endpoint(text).unwrap_err();
         assert!(!problem.contains("hunter2"));

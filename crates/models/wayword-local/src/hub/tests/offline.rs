@@ -1,4 +1,5 @@
-//! Without the network: the cache, files that the user put there, and the user's own folders.
+//! Tests models without the network: from the cache, from files that the user put there, and from the user's own
+//! folders.
 
 use super::{
     fake::{COMMIT, FakeHub, bytes, model},
@@ -20,7 +21,7 @@ fn write_model(folder: &Path) {
 }
 
 #[test]
-fn what_was_fetched_is_found_and_nobody_is_asked() {
+fn offline_uses_the_cache_without_any_request() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(model());
     let online = folder(&fake.client(cache.path()), "hf/org/name").unwrap();
@@ -36,7 +37,7 @@ fn what_was_fetched_is_found_and_nobody_is_asked() {
 }
 
 #[test]
-fn the_path_where_a_file_belongs_is_told_and_works() {
+fn offline_error_names_a_path_where_the_file_works() {
     let cache = tempfile::tempdir().unwrap();
     let hub = offline(cache.path());
     for (name, revision) in

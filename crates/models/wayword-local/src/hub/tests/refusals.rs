@@ -1,4 +1,4 @@
-//! Refusals of the hub, and their messages.
+//! Tests the messages for refusals of the hub, and which failures are tried again.
 
 use super::{
     fake::{FakeHub, Fault, TOKEN, fine, model},
@@ -14,7 +14,7 @@ fn refusing(status: u16, code: &str) -> FakeHub {
 }
 
 #[test]
-fn each_refusal_says_what_to_do() {
+fn each_refusal_has_a_hint() {
     for (status, code, says) in [
         (401, "GatedRepo", "accept its terms"),
         (403, "GatedRepo", "accept its terms"),
@@ -67,7 +67,7 @@ fn faults_that_stay_are_given_up() {
 }
 
 #[test]
-fn an_endpoint_that_is_none_is_refused_and_not_repeated() {
+fn client_refuses_an_invalid_endpoint_without_repeating_it() {
     let config = HubConfig { endpoint: "https://me:hunter2@host".to_owned(), ..HubConfig::new("/nowhere".into()) };
     let problem = Hub::new(config).unwrap_err().to_string();
     assert!(problem.contains("HF_ENDPOINT") && !problem.contains("hunter2"), "{problem}");

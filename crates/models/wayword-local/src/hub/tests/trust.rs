@@ -1,10 +1,10 @@
-//! Files whose hashes are published, given, or kept since their first use.
+//! Tests that a checkpoint must have the hash that is published, given by the user, or kept since its first use.
 
 use super::fake::{COMMIT, FakeHub, bytes, sha256};
 use crate::hub::{Hub, HubConfig, ModelName, Needs, Progress};
 use std::{fs, sync::Mutex};
 
-/// Remembers what was told.
+/// Collects the notes for the user.
 #[derive(Default)]
 struct Notes(Mutex<Vec<String>>);
 
@@ -16,7 +16,7 @@ impl Progress for Notes {
     }
 }
 
-/// What came of a use: the notes, or the error.
+/// Uses a model, and returns the notes for the user, or the error.
 fn used(config: HubConfig, name: &str) -> Result<Vec<String>, String> {
     let (hub, name, notes) = (Hub::new(config).unwrap(), ModelName::parse(name).unwrap(), Notes::default());
     let found = hub.folder(&name, &Needs::of_any(&name), &notes).map_err(|error| error.to_string())?;
@@ -25,14 +25,14 @@ fn used(config: HubConfig, name: &str) -> Result<Vec<String>, String> {
 }
 
 #[test]
-fn a_file_without_a_published_hash_is_told_once_and_held_against_later() {
+fn a_file_without_a_published_hash_is_noted_once_and_compared_later() {
     let cache = tempfile::tempdir().unwrap();
     let fake = FakeHub::start(vec![("own.pth", bytes(3000))]);
     let hash = sha256(&bytes(3000));
     let notes = used(fake.config(cache.path()), "hf/org/name:own.pth").unwrap();
     assert!(notes.len() == 1 && notes[0].contains(&hash) && notes[0].contains("hf/org/name:own.pth"), "{notes:?}");
     assert!(used(fake.config(cache.path()), "hf/org/name:own.pth").unwrap().is_empty());
-    // The file on this machine is exchanged.
+    // Somebody replaces the file on this machine.
     let kept = cache.path().join("models--org--name/.trust/main/own.pth.sha256");
     assert_eq!(fs::read_to_string(&kept).unwrap().trim(), hash);
     let file = cache.path().join("models--org--name/snapshots").join(COMMIT).join("own.pth");
@@ -41,7 +41,7 @@ fn a_file_without_a_published_hash_is_told_once_and_held_against_later() {
     for part in [&hash, &sha256(&bytes(3001)), "--trust", "own.pth"] {
         assert!(error.contains(part), "{error}");
     }
-    // The user may say that it is right.
+    // The user accepts the new file by its hash.
     let trust = Some(sha256(&bytes(3001)).to_uppercase());
     assert!(used(HubConfig { trust, ..fake.config(cache.path()) }, "hf/org/name:own.pth").unwrap().is_empty());
 }
@@ -61,12 +61,12 @@ fn a_hash_that_is_published_or_given_must_be_the_files() {
     let given = |hash: &str| HubConfig { trust: Some(hash.to_owned()), ..config() };
     assert!(used(given(&sha256(&bytes(100))), &name).unwrap().is_empty());
     assert!(used(given(&sha256(b"")), &name).unwrap_err().contains("which was given"));
-    // Nothing was kept.
+    // No hash was kept.
     assert!(!folder.path().join("cache").exists());
 }
 
 #[test]
-fn the_users_own_file_is_kept_in_mind_by_its_path() {
+fn the_hash_of_the_users_own_file_is_kept_by_its_path() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("mine.pth");
     let name = format!("hf/{}", file.display());

@@ -1,3 +1,5 @@
+//! Compares plain and deformed convolutions with candle's, and tests the reading of offsets.
+
 use super::*;
 use candle_core::Device;
 
@@ -20,7 +22,7 @@ fn off(a: &Tensor, b: &Tensor) -> f32 {
 }
 
 #[test]
-fn a_plain_convolution_is_candles() {
+fn plain_convolution_agrees_with_candle() {
     let (conv, kernel, bias) = conv();
     for (height, width, stride) in [(13, 9, 1), (13, 9, 2), (12, 8, 2), (1, 1, 2), (1, 2, 1)] {
         let x = drawn(&[height * width, 4], 3);
@@ -37,7 +39,7 @@ fn offsets_of_whole_positions_are_a_moved_map() {
     let (conv, ..) = conv();
     let (height, width) = (7, 6);
     let x = drawn(&[42, 4], 5);
-    // Everything is read one row further down, and what is below the map is 0. A mask of 40 is 1.
+    // All taps read one row further down, and rows below the map are 0. The sigmoid of a mask of 40 is 1.
     let bends: Vec<f32> =
         (0..42 * BENDS).map(|at| [1.0, 0.0, 40.0][if at % BENDS < 18 { at % BENDS % 2 } else { 2 }]).collect();
     let bends = Tensor::from_vec(bends, (42, BENDS), &Device::Cpu).unwrap();
@@ -51,7 +53,7 @@ fn offsets_of_whole_positions_are_a_moved_map() {
 }
 
 #[test]
-fn on_any_other_device_it_would_be_the_same() {
+fn candles_operators_give_the_same_convolution() {
     let (conv, ..) = conv();
     let (height, width) = (9, 7);
     let map = Map { x: drawn(&[63, 4], 7), height, width };

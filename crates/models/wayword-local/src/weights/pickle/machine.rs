@@ -1,4 +1,8 @@
 //! Reads a pickle step by step.
+//!
+//! A pickle is a list of steps for a stack machine. Each step begins with one byte: `K` pushes a number, `X` a text,
+//! `t` makes a tuple of everything since the last mark, `R` calls a function with a tuple, and so on. Only the steps
+//! that PyTorch writes into checkpoints are understood.
 
 use super::{Known, Place, Storage, Tuple, Value};
 use std::{collections::BTreeMap, rc::Rc};
@@ -6,10 +10,11 @@ use std::{collections::BTreeMap, rc::Rc};
 /// The most values, so that a small file cannot fill the memory.
 const MOST_VALUES: usize = 4 << 20;
 
-/// How deep tuples may lie in tuples.
+/// The deepest nesting of tuples.
 const DEEPEST: usize = 16;
 
-/// The state of reading: what is left, what was read, and what was given a number.
+/// The state of the stack machine: the bytes that are left, the stack, the marks on it, and the values that got a
+/// number to be used again (`memo`).
 #[derive(Default)]
 pub(super) struct Machine<'a> {
     rest: &'a [u8],
@@ -76,7 +81,7 @@ impl<'a> Machine<'a> {
         Ok(self.take(1)?[0])
     }
 
-    /// An unsigned number of up to four bytes, the lowest first.
+    /// Reads an unsigned number of up to four bytes, the lowest byte first.
     fn number(&mut self, bytes: usize) -> Result<u32, String> {
         Ok(self.take(bytes)?.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte)))
     }
@@ -103,7 +108,7 @@ impl<'a> Machine<'a> {
         self.tables.push(BTreeMap::new());
     }
 
-    /// A whole number; one of four bytes has a sign.
+    /// Pushes a whole number. Only a number of four bytes has a sign.
     fn whole(&mut self, bytes: usize) -> Result<(), String> {
         let number = self.number(bytes)?;
         self.stack.push(Value::Whole(if bytes == 4 { i64::from(number.cast_signed()) } else { i64::from(number) }));
@@ -114,7 +119,7 @@ impl<'a> Machine<'a> {
         let count = usize::from(self.byte()?);
         let bytes = self.take(count)?;
         let sign = if bytes.last().is_some_and(|byte| byte & 0x80 != 0) { -1 } else { 0 };
-        // Longer numbers are no sizes.
+        // A longer number cannot be a size, so its value is not needed.
         let number = (count <= 8).then(|| bytes.iter().rev().fold(sign, |number, &byte| number << 8 | i64::from(byte)));
         self.stack.push(number.map_or(Value::Other, Value::Whole));
         Ok(())
@@ -186,7 +191,7 @@ impl<'a> Machine<'a> {
         self.join(values)
     }
 
-    /// A storage: ("storage", type, key, device, count).
+    /// Replaces the tuple ("storage", type, key, device, count) on the stack by a storage.
     fn storage(&mut self) -> Result<(), String> {
         let Value::Tuple(parts) = self.pop()? else { return Err("a storage is not described".to_owned()) };
         let [Value::Text(_), Value::Known(kind), Value::Text(key), Value::Text(_), Value::Whole(count)] =
@@ -227,7 +232,7 @@ impl<'a> Machine<'a> {
         self.set(pairs)
     }
 
-    /// Puts pairs into the table that is on top. Only texts are keys of what is read.
+    /// Puts pairs of key and value into the table on top of the stack. Pairs with a key that is no text are dropped.
     fn set(&mut self, pairs: Vec<Value>) -> Result<(), String> {
         let Some(Value::Table(table)) = self.stack.last() else { return Err("it fills what is no table".to_owned()) };
         let Some(table) = self.tables.get_mut(*table) else {
@@ -243,7 +248,7 @@ impl<'a> Machine<'a> {
     }
 }
 
-/// A tensor: (storage, offset, shape, strides, ..).
+/// Reads the location of a tensor from the arguments of its constructor: (storage, offset, shape, strides, ..).
 fn place(given: &[Value]) -> Option<Place> {
     let [Value::Storage(storage), Value::Whole(offset), Value::Tuple(shape), Value::Tuple(strides), ..] = given else {
         return None;

@@ -1,3 +1,5 @@
+//! Tests checkpoints as training leaves them, whole, damaged and malicious.
+
 use super::*;
 use std::io::Write;
 use zip::{ZipWriter, write::SimpleFileOptions};
@@ -55,7 +57,7 @@ fn told(folder: &Path, pickle: &[u8], shape: &[usize]) -> Result<Vec<f32>, Strin
 }
 
 #[test]
-fn the_weights_alone_are_read() {
+fn only_the_weights_are_read() {
     let file = Trained::open(&fixture()).unwrap();
     assert!(file.names().all(|name| !name.starts_with("module.") && !name.contains("exp_avg")));
     assert_eq!(file.shape("rpn.head.bias0").unwrap(), [1]);
@@ -78,7 +80,7 @@ fn a_tensor_may_be_a_part_of_its_storage() {
 }
 
 #[test]
-fn what_does_not_fit_together_is_told_by_tensor() {
+fn contradictory_sizes_are_reported_with_the_tensor() {
     let folder = tempfile::tempdir().unwrap();
     for (pickle, shape, problem) in [
         (pickle(4, 3, &[2], &[1]), &[2][..], "larger than"),
@@ -92,7 +94,7 @@ fn what_does_not_fit_together_is_told_by_tensor() {
 }
 
 #[test]
-fn nothing_is_called_that_is_not_known() {
+fn a_pickle_that_calls_an_unknown_name_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     for (pickle, problem) in [
         (&b"cos\nsystem\n(X\x04\x00\x00\x00true\x85R."[..], "\"os.system\""),
