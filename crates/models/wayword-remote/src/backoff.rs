@@ -1,4 +1,4 @@
-//! How long to wait before a request is repeated.
+//! Computes how long to wait before a request is repeated: exponential backoff with a repeatable jitter.
 
 use std::time::Duration;
 use wayword_core::seed;
@@ -9,8 +9,8 @@ const FIRST_S: f64 = 0.3;
 /// Longest wait that the program chooses itself. A server may ask for a longer one.
 const LONGEST_S: f64 = 30.0;
 
-/// A wait that doubles with each attempt, minus up to half of it. The part that is taken off depends on the call's key
-/// and the attempt alone, so that a run is repeatable and calls that failed together are not repeated together.
+/// A wait that doubles with each attempt, minus up to half of it. The reduction depends only on the call's key and the
+/// attempt, so that a run is repeatable and calls that failed together are not repeated together.
 pub(crate) fn backoff(key: &str, attempt: u32) -> Duration {
     let whole = FIRST_S * f64::from(2_u32.saturating_pow(attempt.saturating_sub(1).min(16)));
     Duration::from_secs_f64(whole.min(LONGEST_S) * (1.0 - 0.5 * fraction(key, attempt)))

@@ -1,4 +1,4 @@
-//! A provider's address.
+//! Parses and checks a provider's base URL.
 
 use std::{fmt, net::IpAddr};
 use ureq::http::Uri;
@@ -7,9 +7,9 @@ use ureq::http::Uri;
 #[derive(Clone, PartialEq, Eq)]
 pub(crate) struct BaseUrl {
     text: String,
-    /// Whether it is this machine.
+    /// Whether the host is this machine.
     pub(crate) loopback: bool,
-    /// Whether it is `http`, so that others on the network can read what is sent.
+    /// Whether the scheme is `http`, so that others on the network can read the requests.
     pub(crate) plain: bool,
 }
 
@@ -17,7 +17,7 @@ impl BaseUrl {
     /// Reads a base URL. If it has no path, adds the version that the dialect uses.
     ///
     /// # Errors
-    /// Says what is wrong, and leaves out the URL, because it may contain a password.
+    /// The message names the problem and leaves out the URL, because it may contain a password.
     pub(crate) fn new(text: &str, version: &str) -> Result<Self, &'static str> {
         if text.len() > 2000 {
             return Err("is too long");
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_web_address_is_refused() {
+    fn new_refuses_texts_that_are_no_web_address() {
         for text in
             ["", "localhost:8000", "ftp://host/", "file:///etc/passwd", "http://", "http://h/v1?key=1", "http://h/#x"]
         {

@@ -1,4 +1,7 @@
-//! One call: repeats a request until it is answered or another attempt makes no sense.
+//! Makes one call: repeats a request until it is answered, or until another attempt makes no sense.
+//!
+//! Each attempt waits for the limiter, sends the request, and reads the response. A fault is classified by
+//! [`faults`](crate::faults); the ledger records every attempt, because a failed one may cost money too.
 
 use crate::{
     Price,
@@ -85,7 +88,7 @@ enum Attempt {
     Fault(Fault),
     /// The run was stopped, or the endpoint closed, before anything was sent.
     NotSent,
-    /// The ledger, which keeps the rate of all workers, could not be used. Nothing was sent.
+    /// The ledger, which limits the rate of all workers together, could not be used. No request was sent.
     NoTurn(LedgerError),
 }
 
@@ -227,7 +230,7 @@ impl Sending<'_> {
             |body: &[u8]| faults::of_response(status, &received.headers, body, SystemTime::now(), endpoint.who());
         let body = match &received.body {
             Ok(body) => body,
-            // The status says enough, even if the body was lost.
+            // The status is enough, even if the body was lost.
             Err(_) if !(200..300).contains(&status) => return Err(fault(&[])),
             Err(error) => {
                 return Err(faults::of_transport(
@@ -252,7 +255,7 @@ impl Sending<'_> {
         })
     }
 
-    /// Tokens in and out. Estimated where the service gives no number, or an impossible one.
+    /// Tokens in and out. Estimated where the service reports no number, or an impossible one.
     fn tokens(&self, heard: &Heard) -> (u64, u64) {
         let told = |tokens: Option<u64>| tokens.filter(|tokens| *tokens <= MOST_TOKENS);
         let tokens_out = || heard.text.chars().count() as u64 / 4;

@@ -1,4 +1,5 @@
-//! Checks whether a model can be used, and says in plain words what to do if it cannot.
+//! Checks whether a model can be used, for `wayword doctor`: key, service, price, and an answer to a test question. Each
+//! finding comes with advice if something is wrong.
 
 use crate::{
     Dialect, RemoteModel, Services,
@@ -20,9 +21,9 @@ const MAX_TOKENS: u32 = 256;
 /// How good or bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// As it should be.
+    /// All is in order.
     Ok,
-    /// The model can be used, but something is not as it should be.
+    /// The model can be used, but something should be changed.
     Warning,
     /// The model cannot be used.
     Problem,
@@ -33,14 +34,14 @@ pub enum Level {
 pub struct Finding {
     /// How good or bad it is.
     pub level: Level,
-    /// What was found.
+    /// The finding, for people.
     pub what: String,
-    /// What to do about it.
+    /// How to fix it.
     pub to_do: Option<String>,
 }
 
 impl Finding {
-    /// A finding that all is as it should be.
+    /// A finding that all is in order.
     pub fn ok(what: impl Into<String>) -> Self {
         Self { level: Level::Ok, what: what.into(), to_do: None }
     }

@@ -1,4 +1,4 @@
-//! The user's settings for services.
+//! The user's settings for services, as they are read from TOML.
 
 use crate::{Dialect, Prices};
 use serde::Deserialize;
@@ -22,11 +22,11 @@ pub struct Config {
     pub concurrency: Concurrency,
     /// Most requests for one call: the first one, and repeats after faults.
     pub attempts: u32,
-    /// Most requests per minute, for providers without a limit of their own.
+    /// Most requests per minute, for providers that set no limit themselves.
     pub requests_per_minute: Option<f64>,
-    /// Most tokens per minute, in and out, for providers without a limit of their own.
+    /// Most tokens per minute, in and out, for providers that set no limit themselves.
     pub tokens_per_minute: Option<f64>,
-    /// What models cost.
+    /// The prices of models.
     #[serde(skip)]
     pub prices: Prices,
     /// Refuse models without a price, because there is a limit on money.
@@ -57,7 +57,7 @@ pub struct ProviderConfig {
     pub base_url: Option<String>,
     /// Name of the environment variable with its key.
     pub key_env: Option<String>,
-    /// Whether it runs on this machine and costs nothing.
+    /// Whether it runs on this machine, free of charge.
     pub local: Option<bool>,
     /// Whether none of its models takes pictures.
     pub blind: Option<bool>,
@@ -69,7 +69,7 @@ pub struct ProviderConfig {
     pub extra: Option<serde_json::Map<String, serde_json::Value>>,
     /// Those of `temperature`, `seed` and `max_tokens` that are not sent.
     pub omit: Option<Vec<String>>,
-    /// How it is told that a reply is to be JSON of some form.
+    /// How a request asks it for a reply in JSON.
     pub json: Option<Json>,
     /// Whether its models can call tools.
     pub tools: Option<bool>,
@@ -81,15 +81,15 @@ pub struct ProviderConfig {
     pub advertises_requests_per_day: Option<bool>,
 }
 
-/// How a service is told that a reply is to be JSON of some form.
+/// How a request asks a service for a reply in JSON.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Json {
-    /// It gets the schema and holds the model to it.
+    /// The request contains the schema, and the service makes the model follow it.
     Schema,
-    /// It holds the model to JSON; the form stands in the prompt.
+    /// The service makes the model write JSON; the prompt describes the form.
     Object,
-    /// The prompt alone says so.
+    /// Only the prompt asks for it.
     #[default]
     Prompt,
 }

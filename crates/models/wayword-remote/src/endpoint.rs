@@ -1,4 +1,4 @@
-//! One provider in use: its connections, its limits, its key, and whether it refuses all further requests.
+//! One provider in use: its connections, its limits, its key and, once the service refuses all requests, the reason.
 
 use crate::{
     Config, Secret,
@@ -25,13 +25,13 @@ pub(crate) struct Endpoint {
     transport: Transport,
     /// Read when the provider is first used, because a run that is answered from the ledger needs no key.
     secret: OnceLock<Result<Option<Secret>, String>>,
-    /// Set when the key is refused or the quota is used up, so that the other threads send nothing more.
+    /// Set when the key is refused or the quota is used up, so that the other threads stop sending.
     closed: OnceLock<Closed>,
 }
 
 impl Endpoint {
-    /// With `shares_rates` the ledger keeps the rates that the user sets, for all workers together. What the service
-    /// advertises is kept here all the same.
+    /// With `shares_rates` the ledger enforces the user's rates for all workers together. Rates that the service
+    /// advertises are enforced here in both cases.
     pub(crate) fn new(provider: Provider, config: &Config, shares_rates: bool) -> Self {
         let own = |rate: Option<f64>| rate.filter(|_| !shares_rates);
         let rules = Rules {
@@ -49,7 +49,7 @@ impl Endpoint {
         }
     }
 
-    /// The rates that the user sets, for a ledger that keeps them for all workers, and what they are called there.
+    /// The user's rates, for a ledger that enforces them for all workers, and their name in that ledger.
     pub(crate) fn rates(&self) -> (String, Rates) {
         let per_s = |per_minute: Option<f64>| per_minute.map(|rate| rate / 60.0);
         let rates = Rates {
@@ -74,7 +74,7 @@ impl Endpoint {
         }
     }
 
-    /// What messages about this provider's faults need.
+    /// The details of this provider that messages about faults need.
     pub(crate) fn who(&self) -> Who<'_> {
         Who {
             provider: &self.provider.name,
@@ -89,7 +89,7 @@ impl Endpoint {
         let _ = self.closed.set(closed);
     }
 
-    /// Why no more requests are sent, if that is so.
+    /// Why no more requests are sent; `None` while requests are sent.
     pub(crate) fn closed(&self) -> Option<&Closed> {
         self.closed.get()
     }

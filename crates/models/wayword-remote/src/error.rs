@@ -31,7 +31,7 @@ pub enum ConfigError {
     BaseUrl {
         /// The provider.
         provider: String,
-        /// What is wrong with it. Never the URL, which may contain a password.
+        /// The problem. Never the URL, which may contain a password.
         problem: &'static str,
     },
     /// One base URL or key for several providers.
@@ -47,9 +47,9 @@ pub enum ConfigError {
     /// A model that cannot be used at the moment.
     #[error("{problem}\nhint: {hint}")]
     NotReady {
-        /// What is missing, and where.
+        /// The missing part, and where it is expected.
         problem: String,
-        /// What to do.
+        /// How the user can fix it.
         hint: String,
     },
     /// There is a limit on money, and a model without a price.
@@ -57,12 +57,12 @@ pub enum ConfigError {
         "the price of {0} is not known, so --max-usd cannot be enforced\nhint: give it with --prices FILE, where FILE has a row like \"{0}\" = {{ usd_per_million_in = 0.4, usd_per_million_out = 1.6, as_of = \"2026-11-01\" }}; if the model runs on this machine, set local = true under its [providers.NAME] in the --config file instead"
     )]
     NoPrice(String),
-    /// A number or a name that makes no sense.
+    /// A number or a name that is out of range or invalid.
     #[error("{setting} {problem}")]
     Setting {
         /// The setting.
         setting: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: &'static str,
     },
 }

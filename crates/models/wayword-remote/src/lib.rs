@@ -1,9 +1,9 @@
 //! Models behind HTTP, as [`wayword_core::LanguageModel`]: OpenAI, Anthropic, Gemini, Ollama, and every service with
 //! one of their APIs.
 //!
-//! Each dialect (API) is one file with two pure functions: one makes a request's body, one reads a reply's body. Around
-//! them there are one transport, one module that decides what a fault means, one limiter per endpoint, and the ledger,
-//! which makes each call once.
+//! Each dialect (API) is one file with two pure functions: one makes a request's body, one reads a reply's body. The
+//! other parts are a transport, a module that classifies faults, a limiter for each endpoint, and the ledger, which makes
+//! each call once.
 //!
 //! The crate `genai` does the same job. It is not used, because it reads a response's body without a limit, puts the
 //! whole request with its pictures and the whole body into its errors, refuses JSON with another content type, has no

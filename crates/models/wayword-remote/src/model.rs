@@ -1,4 +1,5 @@
-//! A model behind HTTP.
+//! A model behind HTTP: turns requests into calls of the ledger, makes those that the ledger has no answer for, and
+//! answers batches with several threads.
 
 use crate::{
     Json, Price,
@@ -229,7 +230,7 @@ mod tests {
 
     /// If a tokenizer does not know a script, each byte is a token.
     #[test]
-    fn no_script_has_more_tokens_than_are_reckoned_with() {
+    fn most_tokens_in_bounds_every_script() {
         let sampling = Sampling { temperature: 0.0, max_tokens: 20, seed: 0 };
         for text in ["మెట్లు ఎక్కండి", "सीढ़ियाँ चढ़ो", "\u{1f6cb}\u{1f6aa}"]
         {

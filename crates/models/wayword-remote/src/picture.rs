@@ -30,7 +30,7 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    /// An encoder for pictures whose longer side is at most `longer_px` pixels.
+    /// An encoder that scales pictures down until their longer side is at most `longer_px` pixels.
     pub(crate) fn new(longer_px: u32) -> Self {
         Self { longer_px, known: Mutex::default() }
     }

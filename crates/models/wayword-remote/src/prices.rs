@@ -1,4 +1,4 @@
-//! What models cost.
+//! Prices of models: the built-in table (`prices.toml`), with the user's rows over it.
 
 use crate::PricesError;
 use serde::Deserialize;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 const BUILT_IN: &str = include_str!("prices.toml");
 
-/// What a model costs.
+/// The price of a model.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Price {
@@ -14,7 +14,7 @@ pub struct Price {
     pub usd_per_million_in: f64,
     /// US dollars per million tokens of the reply.
     pub usd_per_million_out: f64,
-    /// The day on which the price was known to be right; empty if the model costs nothing.
+    /// The day on which the price was last checked; empty if the model is free.
     pub as_of: String,
     /// The most tokens that a picture counts as.
     #[serde(default = "tokens_per_picture")]
@@ -36,7 +36,7 @@ impl Price {
         Self { usd_per_million_in: 0.0, usd_per_million_out: 0.0, as_of: String::new(), tokens_per_picture: 0 }
     }
 
-    /// What a call with these tokens costs, US dollars.
+    /// The cost of a call with these tokens, US dollars.
     #[must_use]
     pub fn usd(&self, tokens_in: u64, tokens_out: u64) -> f64 {
         (tokens_in as f64 * self.usd_per_million_in + tokens_out as f64 * self.usd_per_million_out) / 1e6
@@ -60,7 +60,7 @@ impl Prices {
     /// The built-in table, with the user's rows (the text of a TOML file) in place of rows of the same name.
     ///
     /// # Errors
-    /// When the text is not such a table, or an amount is negative.
+    /// When the text is not a table of prices, or an amount is negative.
     pub fn read(text: &str) -> Result<Self, PricesError> {
         let own: BTreeMap<String, Price> =
             toml::from_str(text).map_err(|error| PricesError::Toml(error.to_string()))?;
@@ -74,7 +74,7 @@ impl Prices {
         Ok(prices)
     }
 
-    /// What a model costs: by its name, or by the longest listed name that it is a dated snapshot of.
+    /// The price of a model: by its name, or by the longest listed name that it is a dated snapshot of.
     pub(crate) fn of(&self, name: &str) -> Option<Price> {
         let snapshot = || self.0.iter().rev().find(|(base, _)| is_snapshot(name, base)).map(|(_, price)| price);
         self.0.get(name).or_else(snapshot).cloned()
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_snapshot_costs_what_its_model_costs() {
+    fn a_snapshot_has_the_price_of_its_model() {
         let prices = Prices::built_in();
         assert_eq!(prices.of("openai/gpt-4.1-mini-2025-04-14"), prices.of("openai/gpt-4.1-mini"));
         assert_eq!(prices.of("anthropic/claude-sonnet-4-20250514").unwrap().usd_per_million_in, 3.0);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_users_rows_stand_above_the_built_in_ones() {
+    fn read_puts_a_users_rows_over_the_built_in_ones() {
         let row = "\"x/y\" = { usd_per_million_in = 1, usd_per_million_out = 2.5, as_of = \"2026-01-01\" }";
         let prices = Prices::read(row).unwrap();
         assert_eq!(prices.of("x/y").unwrap().usd(2_000_000, 1_000_000), 4.5);

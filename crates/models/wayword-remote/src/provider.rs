@@ -1,4 +1,4 @@
-//! Providers: the built-in table, and the user's settings.
+//! Providers: merges the built-in table (`provider.toml`) with the user's settings, and checks the result.
 
 use crate::{Config, ConfigError, Dialect, Json, ProviderConfig, base_url::BaseUrl};
 use serde_json::{Map, Value};
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_may_hold_slashes_and_colons() {
+    fn split_accepts_models_with_slashes_and_colons() {
         assert_eq!(split("ollama/hf.co/owner/model:Q4").unwrap(), ("ollama", "hf.co/owner/model:Q4"));
         for name in ["qwen3", "/model", "ollama/", "ollama/a b", "ollama/a\nb", ""] {
             assert!(split(name).is_err(), "{name:?}");
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_said_with_the_way_out() {
+    fn resolve_errors_name_the_missing_setting_and_its_flag() {
         let config = Config::default();
         let table = Table::new(&config.providers);
         let error = table.resolve("nobody", &config).unwrap_err().to_string();

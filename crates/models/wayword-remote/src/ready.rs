@@ -1,4 +1,5 @@
-//! Finds out why a model cannot be used, without asking it.
+//! Checks, before a run begins, whether a model can be used: its key, its address, and whether it takes pictures. Sends no
+//! question to the model.
 
 use crate::{ConfigError, RemoteModel, Services, base_url::BaseUrl, endpoint::Endpoint};
 use std::{
@@ -12,11 +13,11 @@ use ureq::{Proxy, http::Uri};
 const PATIENCE: Duration = Duration::from_secs(2);
 
 impl Services {
-    /// Refuses a model if its key is missing, nothing listens at its service's address, or the host is not found.
+    /// Refuses a model if its key is missing, no service listens at its address, or the host is not found.
     /// Connects only to services on this machine, and to addresses that the user gave.
     ///
     /// # Errors
-    /// When the model cannot be used, or there is no such provider.
+    /// When the model cannot be used, or the provider does not exist.
     pub fn ready(&self, name: &str) -> Result<(), ConfigError> {
         let model = self.model(name)?;
         let endpoint = &model.endpoint;
@@ -29,7 +30,7 @@ impl Services {
     /// Refuses a model that is to be shown pictures, if its provider takes none. Makes no connection.
     ///
     /// # Errors
-    /// When it takes no pictures, or there is no such provider.
+    /// When it takes no pictures, or the provider does not exist.
     pub fn takes_pictures(&self, name: &str) -> Result<(), ConfigError> {
         let model = self.model(name)?;
         let provider = &model.endpoint.provider;
@@ -41,11 +42,11 @@ impl Services {
         Err(ConfigError::NotReady { problem, hint })
     }
 
-    /// Refuses a model that is to be shown pictures, if its service says that it does not see. Ollama says so. Of other
-    /// services it is not known before the model is asked; `doctor` shows it a picture.
+    /// Refuses a model that is to be shown pictures, if its service reports that it does not see. Only Ollama reports
+    /// this. With other services it is unknown until the model is asked; `doctor` shows it a picture.
     ///
     /// # Errors
-    /// When it does not see, or there is no such provider.
+    /// When it does not see, or the provider does not exist.
     pub fn sees(&self, name: &str) -> Result<(), ConfigError> {
         let model = self.model(name)?;
         if !self.is_reached_directly(&model.endpoint) || describes_sight(&model) != Some(false) {
@@ -64,12 +65,12 @@ impl Services {
     /// The base URL of a model's service.
     ///
     /// # Errors
-    /// When there is no such provider.
+    /// When the provider does not exist.
     pub fn base_url(&self, name: &str) -> Result<String, ConfigError> {
         Ok(self.model(name)?.endpoint.provider.base_url.as_str().to_owned())
     }
 
-    /// Whether a test connection says something: not through a proxy, and not for remote services.
+    /// Whether a test connection is meaningful. It is not through a proxy, nor for remote services.
     fn is_reached_directly(&self, endpoint: &Endpoint) -> bool {
         let provider = &endpoint.provider;
         let is_near = provider.local || self.has_own_address(&provider.name);
@@ -77,7 +78,7 @@ impl Services {
     }
 }
 
-/// Whether a model sees, by its service; `None` where the service does not say or does not answer.
+/// Whether a model sees, according to its service; `None` where the service does not report this or does not answer.
 fn describes_sight(model: &RemoteModel) -> Option<bool> {
     let dialect = model.endpoint.provider.dialect;
     let wire = dialect.to_describe(model.model())?;
@@ -147,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_port_that_nobody_listens_at_is_told() {
+    fn ready_names_an_address_where_no_service_listens() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let url = format!("http://{}/v1", listener.local_addr().unwrap());
         assert_eq!(told(&url, None), None);
@@ -160,13 +161,13 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_is_missing_is_told() {
+    fn ready_names_a_missing_key() {
         let problem = told("http://127.0.0.1:9/v1", Some("WAYWORD_NO_SUCH_KEY")).unwrap();
         assert!(problem.contains("WAYWORD_NO_SUCH_KEY") && problem.contains("export"), "{problem}");
     }
 
     #[test]
-    fn a_provider_without_pictures_is_told_before_any_call() {
+    fn takes_pictures_refuses_text_providers_before_any_call() {
         let told = |name: &str| {
             let config = Config { base_url: Some("http://127.0.0.1:9/v1".to_owned()), ..Config::default() };
             let run = Ledger::in_memory().unwrap().run("test", Limits::default()).unwrap();

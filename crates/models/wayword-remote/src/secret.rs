@@ -1,4 +1,4 @@
-//! Keys, which are never shown.
+//! API keys, which are never shown: `Debug` and `Display` print a mask, and texts of a server are scrubbed.
 
 use std::fmt;
 
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nobody_sees_a_key() {
+    fn secret_is_masked_in_output_and_scrubbed_from_texts() {
         let secret = Secret::new(" sk-0123456789\n").unwrap();
         assert_eq!(format!("{secret:?} {secret}"), "*** ***");
         assert_eq!(secret.scrub("bad key sk-0123456789!".to_owned()), "bad key ***!");

@@ -1,4 +1,5 @@
-//! The services of a run: each provider in use, once.
+//! The services of a run. Finds a model by its name, and opens each provider once, so that its models share connections
+//! and limits.
 
 use crate::{
     Concurrency, Config, ConfigError, Price, RemoteModel,
@@ -35,7 +36,7 @@ impl Services {
     /// Services for one run of the ledger. Makes no connection, and reads no key.
     ///
     /// # Errors
-    /// When a setting makes no sense.
+    /// When a setting is out of range.
     pub fn new(config: Config, run: Run) -> Result<Self, ConfigError> {
         let wrong = |setting: &str, problem| Err(ConfigError::Setting { setting: setting.to_owned(), problem });
         let most = match config.concurrency {
@@ -62,7 +63,7 @@ impl Services {
     /// A model by its name, `provider/model`.
     ///
     /// # Errors
-    /// When there is no such provider, its description is wrong, or a price is needed and not known.
+    /// When the provider does not exist, its settings are wrong, or a price is needed and not known.
     pub fn model(&self, name: &str) -> Result<Arc<RemoteModel>, ConfigError> {
         let (provider, _) = provider::split(name)?;
         let endpoint = self.endpoint(provider)?;
@@ -89,8 +90,8 @@ impl Services {
         }))
     }
 
-    /// What a model costs. A local provider costs nothing on this machine. At another address it costs nothing only if
-    /// there is no limit on money.
+    /// The price of a model. A local provider is free on this machine. At another address it counts as free only if the
+    /// user sets no limit on money, because the same software may be a paid service there.
     fn price(&self, name: &str, provider: &Provider) -> Option<Price> {
         let at_home = provider.local && (provider.base_url.loopback || !self.config.needs_prices);
         self.config.prices.of(name).or_else(|| at_home.then(Price::nothing))
@@ -167,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_runs_at_home_is_free_and_the_same_software_elsewhere_is_not() {
+    fn local_models_are_free_only_on_this_machine() {
         assert_eq!(refused(None, "vllm", ProviderConfig::default()), None);
         let told = refused(Some("https://models.example.com/v1"), "vllm", ProviderConfig::default()).unwrap();
         assert!(told.contains("price"), "{told}");

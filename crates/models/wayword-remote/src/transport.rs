@@ -1,4 +1,4 @@
-//! Requests and responses, bounded in size and time.
+//! Sends HTTP requests. The size of responses and the time for them are limited, and redirects are not followed.
 
 use crate::base_url::BaseUrl;
 use std::time::Duration;

@@ -43,7 +43,7 @@ pub(super) fn tool_calls(body: &Value) -> Vec<String> {
     message.map(calls_of).unwrap_or_default()
 }
 
-/// The same of a message, in the form that this dialect and Ollama's share.
+/// The tools that a message calls, each as a line, in the form that this dialect and Ollama's share.
 pub(super) fn calls_of(message: &Value) -> Vec<String> {
     let calls = message.get("tool_calls").and_then(Value::as_array);
     let function = |call: &Value| {

@@ -46,7 +46,8 @@ pub(super) fn to_wire(asked: Asked<'_>) -> Wire {
     Wire { path: format!("/models/{}:generateContent", in_path(asked.model)), body: body.into() }
 }
 
-/// A schema in the service's own words: types in capitals, and without what it does not know.
+/// Rewrites a JSON schema into the subset of OpenAPI that the service reads: types in capitals, and no
+/// `additionalProperties`.
 fn to_open_api(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

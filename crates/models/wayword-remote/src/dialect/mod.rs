@@ -1,5 +1,5 @@
-//! The APIs of services. Each dialect is one file with two pure functions: one makes a request's body, one reads a
-//! reply's body.
+//! The APIs of services. Each dialect is one file with two pure functions: `to_wire` makes a request's body, `from_wire`
+//! reads a reply's body.
 
 mod anthropic;
 mod chat;
@@ -178,12 +178,12 @@ impl Dialect {
         }
     }
 
-    /// The request that says what a model can do, for services that have one.
+    /// The request for a model's capabilities, for services that have one.
     pub(crate) fn to_describe(self, model: &str) -> Option<Wire> {
         (self == Self::Ollama).then(|| ollama::to_describe(model))
     }
 
-    /// Whether a model takes pictures, by its service's description of it; `None` where that does not say.
+    /// Whether a model takes pictures, by its service's description of it; `None` where the description has no answer.
     pub(crate) fn describes_sight(self, body: &Value) -> Option<bool> {
         if self == Self::Ollama { ollama::describes_sight(body) } else { None }
     }
@@ -250,13 +250,13 @@ fn called(name: Option<&Value>, arguments: Option<&Value>) -> Option<String> {
 }
 
 impl Asked<'_> {
-    /// Each tool that the service is told of, with the schema of its arguments; none where it has no tool calls.
+    /// Each tool of the request with the schema of its arguments; none where the service has no tool calls.
     fn tools(&self) -> Vec<(&'static Tool, Value)> {
         let told = self.tools.iter().filter(|_| self.provider.tools);
         told.filter_map(|tool| Some((tool, serde_json::from_str(tool.arguments).ok()?))).collect()
     }
 
-    /// What the service is told of the form of the reply: its way, the schema's name, and the schema.
+    /// How the request asks for JSON: the mode, the schema's name, and the schema. `None` if only the prompt asks for it.
     fn json(&self) -> Option<(Json, &'static str, Value)> {
         let schema = self.schema.filter(|_| self.provider.json != Json::Prompt)?;
         Some((self.provider.json, schema.name, serde_json::from_str(schema.json).ok()?))

@@ -57,7 +57,7 @@ pub(super) fn from_wire(body: &Value) -> Result<Heard, Missing> {
     Ok(Heard { text: text.to_owned(), end, tokens_in: tokens("prompt_eval_count"), tokens_out: tokens("eval_count") })
 }
 
-/// Asks what a model can do.
+/// The request for a model's capabilities.
 pub(super) fn to_describe(model: &str) -> Wire {
     Wire { path: "/api/show".to_owned(), body: json!({ "model": model }) }
 }

@@ -33,7 +33,7 @@ const SCHEMA: Schema = Schema {
     json: r#"{"type": "object", "additionalProperties": false, "properties": {"type": {"type": "string"}}}"#,
 };
 
-/// The body of a request whose reply is to be JSON.
+/// The body of a request for a reply in JSON.
 fn body_for_json(provider: &Provider) -> Value {
     let sampling = Sampling { temperature: 0.0, max_tokens: 30, seed: 0 };
     let lines = [line(Role::User, "Hi.")];
@@ -42,7 +42,7 @@ fn body_for_json(provider: &Provider) -> Value {
 }
 
 #[test]
-fn services_that_can_hold_a_model_to_a_form_get_it() {
+fn to_wire_sends_the_schema_to_services_that_enforce_it() {
     let schema: Value = serde_json::from_str(SCHEMA.json).unwrap();
     let strict = json!({ "type": "json_schema", "json_schema": { "name": "view", "strict": true, "schema": schema } });
     assert_eq!(body_for_json(&provider("openai", ""))["response_format"], strict);
@@ -55,7 +55,7 @@ fn services_that_can_hold_a_model_to_a_form_get_it() {
 }
 
 #[test]
-fn others_get_the_form_by_the_prompt_alone() {
+fn to_wire_sends_no_schema_to_other_services() {
     for body in [
         body_for_json(&provider("server", "")),
         body_for_json(&provider("anthropic", "")),
@@ -82,7 +82,7 @@ fn body_with_tools(provider: &Provider) -> Value {
 }
 
 #[test]
-fn each_service_is_told_of_tools_in_its_own_words() {
+fn to_wire_describes_tools_in_each_dialect() {
     let arguments = json!({ "type": "object", "properties": { "way": { "type": "integer" } } });
     let function = json!({ "name": "step", "description": "walks", "parameters": arguments });
     let openai = body_with_tools(&provider("openai", ""));
@@ -105,7 +105,7 @@ fn each_service_is_told_of_tools_in_its_own_words() {
 }
 
 #[test]
-fn a_call_of_a_tool_is_a_line_after_the_words() {
+fn heard_appends_tool_calls_as_lines() {
     let heard = |dialect: Dialect, body: Value| dialect.heard(&body).unwrap().text;
     let calls = json!([
         { "id": "1", "type": "function", "function": { "name": "step", "arguments": "{\"way\":\n 2}" } },
@@ -184,7 +184,7 @@ fn anthropic_takes_the_system_apart_and_pictures_first() {
 }
 
 #[test]
-fn gemini_names_the_model_in_its_path_and_nothing_else() {
+fn gemini_puts_the_model_only_into_its_path() {
     let wire = wire(&provider("gemini", ""), &conversation()).unwrap();
     assert_eq!(wire.path, "/models/m%2F1:generateContent");
     let expected = json!({
@@ -203,7 +203,7 @@ fn gemini_names_the_model_in_its_path_and_nothing_else() {
 }
 
 #[test]
-fn gemini_keeps_a_users_tables_beside_its_own() {
+fn gemini_merges_a_users_tables_with_its_own() {
     let own = "[providers.gemini]\nextra = { generationConfig = { thinkingConfig = { thinkingBudget = 0 } } }";
     let body = wire(&provider("gemini", own), &[line(Role::User, "Hi.")]).unwrap().body;
     assert_eq!(body["generationConfig"]["thinkingConfig"]["thinkingBudget"], 0);
@@ -211,7 +211,7 @@ fn gemini_keeps_a_users_tables_beside_its_own() {
 }
 
 #[test]
-fn ollama_does_not_think_unless_told_to() {
+fn ollama_does_not_think_unless_the_settings_ask_for_it() {
     let wire_of = |own: &str| wire(&provider("ollama", own), &conversation()).unwrap();
     let wire = wire_of("");
     assert_eq!(wire.path, "/api/chat");
@@ -316,7 +316,7 @@ fn every_way_to_end_is_understood() {
 }
 
 #[test]
-fn a_reply_without_an_answer_says_what_it_lacks() {
+fn heard_names_the_field_that_a_reply_lacks() {
     for dialect in [Dialect::OpenAi, Dialect::Completions, Dialect::Anthropic, Dialect::Gemini, Dialect::Ollama] {
         for body in [
             json!({}),

@@ -1,10 +1,11 @@
-//! How long a service asks the program to wait, in all the forms that services use.
+//! Reads from a response how long the service asks the program to wait. Services use several headers and forms of time
+//! for this.
 
 use super::{said::Said, times};
 use std::time::{Duration, SystemTime};
 use ureq::http::HeaderMap;
 
-/// Headers that say how much of a limit is left, and when the limit is reset.
+/// Pairs of headers: how much of a limit is left, and when the limit is reset.
 const LIMITS: [(&str, &str); 8] = [
     ("x-ratelimit-remaining-requests", "x-ratelimit-reset-requests"),
     ("x-ratelimit-remaining-tokens", "x-ratelimit-reset-tokens"),
@@ -99,14 +100,14 @@ mod tests {
     }
 
     #[test]
-    fn the_plainest_form_comes_first() {
+    fn asked_prefers_retry_after_ms_then_retry_after() {
         assert_eq!(wait_s(&[("retry-after", "9"), ("retry-after-ms", "8500")], ""), Some(8.5));
         assert_eq!(wait_s(&[("retry-after", "9"), ("x-ratelimit-reset-requests", "1m")], ""), Some(9.0));
     }
 
     proptest! {
         #[test]
-        fn no_header_is_too_odd(value in "[ -~]{0,70}", which in 0_usize..8) {
+        fn asked_reads_any_header_without_panic(value in "[ -~]{0,70}", which in 0_usize..8) {
             let (remaining, reset) = LIMITS[which];
             let _ = wait_s(&[("retry-after", &value), ("retry-after-ms", &value), (remaining, &value), (reset, &value)], &value);
         }

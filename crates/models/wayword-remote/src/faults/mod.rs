@@ -1,4 +1,7 @@
-//! Decides what a fault means: try again, give up this call, or stop the run.
+//! Classifies a fault of a service into one of three reactions: try again, give up this call, or stop the run.
+//!
+//! The status alone is not enough. A 429, for example, may mean "slow down" (try again) or "your account is empty" (stop),
+//! and a 200 may carry an error in its body. So the body's codes and words are read first ([`Said`]).
 
 mod delay;
 mod said;
@@ -16,23 +19,23 @@ use ureq::{Timeout, http::HeaderMap};
 /// Longest wait. If a service asks for a longer one, the run stops.
 const LONGEST_WAIT: Duration = Duration::from_secs(600);
 
-/// What to do about a request that brought no answer.
+/// The reaction to a request without an answer.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Fault {
     /// Another attempt makes sense.
     Retry(Retry),
     /// This call fails. Other calls may succeed.
     Final {
-        /// What happened.
+        /// The cause, for people.
         reason: String,
         /// Whether the request may cost money nevertheless.
         maybe_paid: bool,
     },
     /// Every further call would fail.
     Stop {
-        /// What happened.
+        /// The cause, for people.
         reason: String,
-        /// What to do.
+        /// How the user can fix it.
         hint: String,
     },
 }
@@ -40,24 +43,24 @@ pub(crate) enum Fault {
 /// An attempt that may be repeated.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Retry {
-    /// What happened.
+    /// The cause, for people.
     pub(crate) reason: String,
     /// How long the service asks the program to wait.
     pub(crate) after: Option<Duration>,
-    /// What the fault says about the service's load.
+    /// How loaded the service is, as far as the fault shows it.
     pub(crate) load: Load,
     /// Whether the request may cost money nevertheless.
     pub(crate) maybe_paid: bool,
 }
 
-/// What a fault says about the service's load.
+/// How loaded a service is, as far as a fault shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Load {
-    /// Nothing: the fault happens at any load.
+    /// Unknown: the fault happens at any load.
     Unknown,
     /// The service did not answer in time.
     Slow,
-    /// The service said that there are too many requests or tokens.
+    /// The service reported too many requests or tokens.
     Over,
 }
 
@@ -75,7 +78,7 @@ impl Fault {
         Self::Retry(Retry { reason: reason.into(), after: None, load: Load::Unknown, maybe_paid })
     }
 
-    /// What happened.
+    /// The cause, for people.
     pub(crate) fn reason(&self) -> &str {
         match self {
             Self::Retry(Retry { reason, .. }) | Self::Final { reason, .. } | Self::Stop { reason, .. } => reason,
@@ -88,7 +91,7 @@ pub(crate) fn error_inside(body: &serde_json::Value) -> bool {
     Said::of_json(body).is_error()
 }
 
-/// The fault of a response whose status or body is not that of an answer. Dates in headers are compared with `now`.
+/// The fault of a response that is not an answer, by its status or its body. Dates in headers are compared with `now`.
 pub(crate) fn of_response(status: u16, headers: &HeaderMap, body: &[u8], now: SystemTime, who: Who<'_>) -> Fault {
     let said = Said::read(body);
     // Some services send an error with status 200, and the real status in the body.
@@ -126,7 +129,7 @@ fn overloaded(reason: String, after: Option<Duration>, who: Who<'_>) -> Fault {
     }
 }
 
-/// Whether no more requests can be answered; if so, what to do.
+/// A hint for the user, if the service will answer no further request.
 fn stops(status: u16, said: &Said, who: Who<'_>) -> Option<String> {
     if said.out_of_money() || status == 402 {
         return Some(format!(
@@ -152,7 +155,7 @@ fn stops(status: u16, said: &Said, who: Who<'_>) -> Option<String> {
     }
 }
 
-/// What to do if a service does not know a field that is usually sent.
+/// The setting that helps if a service does not know a field of the request; empty for other messages.
 fn unsupported(message: &str) -> &'static str {
     let message = message.to_ascii_lowercase();
     if !["unsupported", "not support", "unrecognized", "unknown", "extra inputs"]
@@ -207,8 +210,8 @@ pub(crate) fn of_transport(error: &ureq::Error, answered: Option<u16>, url: &str
 }
 
 impl Who<'_> {
-    /// A service's words, short and without the key. The key is removed first, because cutting the text could leave a
-    /// part of it.
+    /// A service's message, short and without the key. The key is removed before the text is cut, because the cut could
+    /// leave a part of the key.
     pub(crate) fn told(&self, words: &str) -> String {
         match self.secret {
             Some(secret) => short(&secret.scrub(words.to_owned())),

@@ -1,17 +1,20 @@
-//! A service's own words about its error, in all known forms.
+//! Reads the error that a service reports in the body of a response.
+//!
+//! Every service has its own JSON: `{"error": {"message": ..., "code": ...}}`, `{"error": "..."}`, `{"detail": ...}` and
+//! others. This file reads all of them into one struct with the message and the codes.
 
 use serde_json::Value;
 use std::time::Duration;
 
-/// Most characters of a service's words that a message repeats.
+/// Most characters of a service's message that an error of ours repeats.
 const LONGEST_MESSAGE: usize = 300;
 
-/// What an error's body says.
+/// The content of an error's body.
 #[derive(Debug, Default)]
 pub(super) struct Said {
-    /// As the service wrote it: of any length, and it may contain the key.
+    /// The message as the service wrote it: of any length, and possibly with the key in it.
     pub(super) message: String,
-    /// Every code, type, status and quota name in it, in lower case.
+    /// Every code, type, status and quota name in the body, in lower case.
     marks: Vec<String>,
     /// A status inside the body.
     pub(super) status: Option<u16>,
@@ -76,7 +79,7 @@ impl Said {
         self.marks.iter().any(|mark| mark.contains("perday")) || self.mentions(&["free-models-per-day"])
     }
 
-    /// Whether the key is not valid, although the status says something else.
+    /// Whether the key is invalid, although the status is not 401.
     pub(super) fn bad_key(&self) -> bool {
         self.marked(&["api_key_invalid", "invalid_api_key"]) || self.mentions(&["api key not valid", "api key expired"])
     }
@@ -132,7 +135,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn words_are_found_in_every_form() {
+    fn read_finds_the_message_in_every_form() {
         let forms = [
             r#"{"error":{"message":"too bad","type":"x","code":null}}"#,
             r#"{"type":"error","error":{"type":"overloaded_error","message":"too bad"}}"#,
@@ -151,7 +154,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn words_stay_short(text in ".{0,3000}", bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        fn short_bounds_every_text(text in ".{0,3000}", bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             prop_assert!(short(&text).chars().count() <= LONGEST_MESSAGE + 1);
             prop_assert!(!short(&text).chars().any(char::is_control));
             Said::read(&bytes);

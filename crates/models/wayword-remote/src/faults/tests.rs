@@ -75,7 +75,7 @@ fn every_status_and_body_has_its_meaning() {
 }
 
 #[test]
-fn a_long_wait_stops_and_a_short_one_is_kept() {
+fn of_response_stops_on_a_long_wait_and_retries_after_a_short_one() {
     let with = |status, wait: &'static str| {
         let headers = HeaderMap::from_iter([(ureq::http::header::RETRY_AFTER, HeaderValue::from_static(wait))]);
         of_response(status, &headers, b"", SystemTime::UNIX_EPOCH, who(None))
@@ -86,7 +86,7 @@ fn a_long_wait_stops_and_a_short_one_is_kept() {
 }
 
 #[test]
-fn reasons_are_short_and_hold_no_key() {
+fn fault_reasons_are_short_and_contain_no_key() {
     let secret = Secret::new("sk-0123456789abcdef").unwrap();
     let body = format!(r#"{{"error":{{"message":"Incorrect API key sk-0123456789abcdef {}"}}}}"#, "x".repeat(5000));
     for status in [200, 400, 401, 429, 500] {
@@ -98,7 +98,7 @@ fn reasons_are_short_and_hold_no_key() {
 }
 
 #[test]
-fn a_field_that_is_not_known_comes_with_the_way_out() {
+fn fault_reasons_name_the_setting_for_an_unknown_field() {
     let body = r#"{"error":{"message":"Unsupported value: 'temperature' does not support 0.6 with this model."}}"#;
     assert!(fault(400, body).reason().contains("omit = [\"temperature\"]"));
     let body = r#"{"error":{"message":"Unsupported parameter: use 'max_completion_tokens' instead."}}"#;
@@ -106,7 +106,7 @@ fn a_field_that_is_not_known_comes_with_the_way_out() {
 }
 
 #[test]
-fn what_broke_before_or_after_sending_is_told_apart() {
+fn of_transport_distinguishes_faults_before_and_after_sending() {
     let io = |kind| ureq::Error::Io(std::io::Error::new(kind, "x"));
     let of = |error: ureq::Error| of_transport(&error, None, "http://h", who(None));
     assert_eq!(kind(&of(io(ErrorKind::ConnectionRefused))), "again");

@@ -1,4 +1,4 @@
-//! Times as services write them.
+//! Parses times and dates in the forms that services use in headers and bodies.
 
 use jiff::{
     SpanRelativeTo, Timestamp,
@@ -6,7 +6,7 @@ use jiff::{
 };
 use std::time::{Duration, SystemTime};
 
-/// Longest text that is read as a time.
+/// Longest text that is read as a time, bytes.
 const LONGEST: usize = 64;
 
 /// Longest time, a year. Longer ones count as this.
@@ -111,7 +111,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_text_is_too_odd(text in ".{0,80}", s in 0_u64..4_000_000_000) {
+        fn times_are_read_from_any_text_without_panic(text in ".{0,80}", s in 0_u64..4_000_000_000) {
             let now = at(s);
             let (duration, bare) = (duration(&text), bare_seconds(&text));
             prop_assert!(duration.or(bare).is_none_or(|d| d <= MOST));
@@ -119,7 +119,7 @@ mod tests {
         }
 
         #[test]
-        fn what_a_service_writes_is_read(h in 0_u32..20, m in 0_u32..60, s in 0_u32..60, ms in 0_u32..1000) {
+        fn times_in_the_forms_of_services_are_read(h in 0_u32..20, m in 0_u32..60, s in 0_u32..60, ms in 0_u32..1000) {
             let text = format!("{h}h{m}m{s}s{ms}ms");
             let expected = f64::from(h * 3600 + m * 60 + s) + f64::from(ms) / 1000.0;
             prop_assert!((duration(&text).unwrap().as_secs_f64() - expected).abs() < 1e-6);

@@ -1,4 +1,4 @@
-//! The limits that a service gives in its headers.
+//! Reads the rate limits that a service advertises in its response headers.
 
 use ureq::http::HeaderMap;
 

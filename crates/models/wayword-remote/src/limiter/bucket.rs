@@ -1,4 +1,4 @@
-//! A bucket that fills at a steady rate.
+//! A token bucket: it fills at a steady rate, and each request takes its amount out. Limits requests or tokens per minute.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,8 @@
 //! Decides when a request may be sent. It has no clock: every function takes the time as an argument.
+//!
+//! The number of requests in flight follows the rule of TCP (additive increase, multiplicative decrease): it grows slowly
+//! while requests are answered, and shrinks by a factor when the service refuses or is slow. On top of it there are the
+//! rates that the user or the service sets ([`Bucket`]), and a rate learned from refusals ([`Pace`]).
 
 use super::{advertised::Advertised, bucket::Bucket, pace::Pace};
 use crate::{Concurrency, faults::Load};
@@ -14,8 +18,8 @@ const SHRINK: f64 = 0.7;
 const SHORTEST_WINDOW: Duration = Duration::from_millis(100);
 
 /// If the share of refusals, or of answers that came too late, is below this, they count as chance and not as a limit:
-/// a refusal then delays its own request and no other. Services in trouble refuse at random. Otherwise each such
-/// refusal would stop all requests for as long as it asks.
+/// a refusal then delays its own request and no other. Services in trouble refuse at random; without this rule each
+/// random refusal would stop all requests for as long as it asks.
 const CHANCE: f64 = 0.125;
 
 /// About how many requests a [`Share`] remembers.
@@ -40,7 +44,7 @@ pub(crate) enum Turn {
     WhenOneIsBack,
 }
 
-/// How a request ended, as far as it says something about the service.
+/// How a request ended, as far as this matters for the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// It was answered.
@@ -48,7 +52,7 @@ pub(crate) enum Outcome {
         /// Tokens in and out.
         tokens: u64,
     },
-    /// A fault that says nothing about the service's load.
+    /// It failed for a reason that has no connection with the service's load.
     Failed,
     /// It took too long, or the service refused it as too much.
     Burdened {
@@ -74,7 +78,7 @@ pub(super) struct Ticket {
 pub(super) struct Gate {
     rules: Rules,
     /// How many requests in flight the service can take; a fraction, because it grows by less than one at a time. If
-    /// the user fixed the number, this value spaces requests out after a refusal and limits nothing.
+    /// the user fixed the number, this value only spaces requests out after a refusal.
     limit: f64,
     out: usize,
     paused_until: Option<Instant>,

@@ -1,6 +1,7 @@
 //! Limits how many requests are sent to an endpoint, and when.
 //!
-//! [`Gate`] makes all decisions and takes the time as an argument. This module lets threads wait for it.
+//! [`Gate`] makes all decisions and takes the time as an argument, so that tests need no clock. This module makes threads
+//! wait for its decisions.
 
 mod advertised;
 mod bucket;
@@ -78,7 +79,7 @@ impl Permit<'_> {
         self.ticket.left_at.elapsed()
     }
 
-    /// Notes that the request leaves only now, after a wait that says nothing about the service.
+    /// Notes that the request is sent only now: the wait before must not count as the service's latency.
     pub(crate) fn leaves(&mut self) {
         self.ticket.left_at = Instant::now();
     }

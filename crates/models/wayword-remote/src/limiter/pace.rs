@@ -1,4 +1,7 @@
-//! Learns the rate of a service that refuses requests when there are too many, and never says how many it allows.
+//! Learns the rate limit of a service that refuses requests above it and does not advertise it.
+//!
+//! At a refusal, the rate of the requests that were accepted lately is close to the limit. The pace is set a little below
+//! it, grows again carefully, and stays near the limit once two refusals came at about the same rate.
 
 use std::{
     collections::VecDeque,
@@ -71,14 +74,14 @@ impl Pace {
         Self { let_in: VecDeque::new(), active_s: 0.0, seen_at: now, learned: None, next: None }
     }
 
-    /// Advances the clock that stops in pauses, and lets the pace grow.
+    /// Advances the clock that stops in pauses, and increases the learned pace.
     pub(super) fn advance(&mut self, now: Instant, paused: bool) {
         let passed_s = now.saturating_duration_since(self.seen_at).as_secs_f64();
         self.seen_at = self.seen_at.max(now);
         if paused {
             return;
         }
-        // A gap without requests says nothing about the service.
+        // Time without requests shows nothing about the service, so a gap counts as one second at most.
         let passed_s = passed_s.min(1.0);
         self.active_s += passed_s;
         if let Some(learned) = &mut self.learned {
@@ -119,7 +122,7 @@ impl Pace {
         let let_in_per_s = if first { self.let_in_per_s() } else { None };
         let Some(let_in_per_s) = let_in_per_s else { return };
         let careful = let_in_per_s * CAUTION;
-        // A pace far above the rate of requests was never tried, so it says nothing.
+        // A pace far above the rate of requests was never tried, so it is no evidence of the limit.
         let old = self.learned.as_ref().filter(|old| old.per_s < let_in_per_s * TRIED);
         let (per_s, refused_per_s, confirmed) = match old {
             None => (careful, let_in_per_s, false),

@@ -29,7 +29,7 @@ fn a_fixed_limit_stays() {
 }
 
 #[test]
-fn a_pause_holds_everybody() {
+fn a_pause_delays_every_request() {
     let start = Instant::now();
     let mut gate = Gate::new(rules(Concurrency::Fixed(4)), start);
     let ticket = gate.leave(start, 0);
@@ -39,7 +39,7 @@ fn a_pause_holds_everybody() {
 }
 
 #[test]
-fn a_refusal_among_many_answers_holds_nobody_else() {
+fn a_refusal_among_many_answers_delays_no_other_request() {
     let start = Instant::now();
     let mut gate = Gate::new(rules(Concurrency::Fixed(4)), start);
     let mut now = start;
@@ -89,7 +89,7 @@ fn an_adaptive_limit_grows_shrinks_once_and_ignores_chance() {
 }
 
 #[test]
-fn rates_of_requests_and_tokens_are_kept() {
+fn gate_enforces_rates_of_requests_and_tokens() {
     let start = Instant::now();
     let minute = |rules: Rules, tokens: u64| {
         let mut gate = Gate::new(rules, start);
@@ -220,7 +220,7 @@ fn goodput(storm: &Storm, concurrency: Concurrency, seconds: u64) -> (f64, u32) 
 }
 
 #[test]
-fn a_storm_at_an_unknown_rate_brings_most_of_what_is_possible() {
+fn gate_reaches_most_of_an_unknown_rate_in_a_storm() {
     for (per_s, burst, retry_after) in [
         (50.0, 3.0, 1000),
         (50.0, 10.0, 1000),
@@ -244,7 +244,7 @@ fn a_storm_at_an_unknown_rate_brings_most_of_what_is_possible() {
 }
 
 #[test]
-fn a_pace_that_nobody_tried_is_forgotten() {
+fn refused_ignores_a_pace_that_was_never_tried() {
     let start = Instant::now();
     let mut gate = Gate::new(rules(Concurrency::Fixed(64)), start);
     let mut now = start;
@@ -273,7 +273,7 @@ fn a_pace_that_nobody_tried_is_forgotten() {
 }
 
 #[test]
-fn faults_alone_hold_nothing_back() {
+fn faults_without_load_do_not_slow_requests() {
     let storm =
         Storm { per_s: 1e6, burst: 1e6, retry_after: ms(0), faults: 0.3, whims: 0.0, lost: 0.0, latency: ms(200) };
     let (goodput, _) = goodput(&storm, Concurrency::Adaptive { most: 64 }, 60);
@@ -318,7 +318,7 @@ fn no_more_are_out_than_the_limit() {
 }
 
 #[test]
-fn the_first_counts_whole_and_old_ones_hardly() {
+fn share_counts_the_first_fully_and_old_ones_hardly() {
     let mut share = Share::default();
     assert_eq!(share.count(true), 1.0);
     let after_calm = (0..400).fold(1.0, |_, _| share.count(false));

@@ -113,7 +113,7 @@ fn a_body_without_end_is_cut_off() {
     let error = asked(&model(&server, "", &run()), "Well?").unwrap_err().to_string();
     assert_eq!(error, "server/m: the answer is longer than 8 MiB");
     assert_eq!(server.requests().len(), 1);
-    // The rest of what it wrote stayed in the sockets' buffers.
+    // The rest of the body stayed in the sockets' buffers.
     assert!(written.load(Ordering::SeqCst) < 100 << 20);
 }
 
@@ -154,7 +154,7 @@ fn silence_is_asked_again_once() {
 }
 
 #[test]
-fn thinking_that_used_up_the_tokens_is_told() {
+fn error_explains_that_thinking_used_up_the_tokens() {
     let server = Server::start(|_, _, stream| reply(stream, 200, "", &ended("<think>a sofa, or is it", "length")));
     let error = asked(&model(&server, "", &run()), "Well?").unwrap_err().to_string();
     assert!(error.contains("spent all its tokens on thinking") && error.contains("reasoning_effort"), "{error}");
@@ -174,7 +174,7 @@ fn a_refused_key_ends_everything_at_once() {
 }
 
 #[test]
-fn a_stopped_run_waits_for_nothing() {
+fn a_stopped_run_ends_its_waits_at_once() {
     let server = Server::start(|_, _, stream| reply(stream, 429, "retry-after: 300\r\n", "{}"));
     let run = run();
     let model = model(&server, "", &run);
@@ -193,7 +193,7 @@ fn a_stopped_run_waits_for_nothing() {
 }
 
 #[test]
-fn nobody_there_is_told() {
+fn error_names_an_address_where_no_service_answers() {
     let server = Server::start(|_, _, _| false);
     let settings = "attempts = 1\n[providers.mine]\ndialect = \"openai\"\nbase_url = \"http://127.0.0.1:1/v1\"";
     let config = toml::from_str(settings).unwrap();

@@ -1,4 +1,4 @@
-//! Only the service sees a key.
+//! A key reaches the service and no other place: no error, file or debug output contains it.
 
 use crate::{
     asked, run,
@@ -52,7 +52,7 @@ fn with_a_key_answers_are_scrubbed() {
 
 #[test]
 #[ignore = "run by the test above, with a key in its environment"]
-fn with_a_key_what_filters_and_lists_say_is_scrubbed() {
+fn with_a_key_texts_of_filters_and_lists_are_scrubbed() {
     let server = Server::start(|_, request, stream| {
         let list = format!(r#"{{"models":[{{"name":"{KEY}"}}]}}"#);
         let blocked = format!(r#"{{"promptFeedback":{{"blockReason":"{KEY}"}}}}"#);
@@ -94,7 +94,7 @@ fn a_missing_key_stops_before_anything_is_sent() {
     assert!(server.requests().is_empty());
 }
 
-/// A service that repeats the key in every possible way.
+/// Talks to a service that repeats the key in every possible way.
 fn says_the_key_back(dialect: &str, header: &str, folder: &Path) {
     let server = Server::start(|count, _, stream| match count % 6 {
         0 => reply(stream, 500, "", &format!(r#"{{"error":{{"message":"key {KEY}"}}}}"#)),

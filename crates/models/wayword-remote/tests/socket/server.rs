@@ -1,4 +1,4 @@
-//! A server that does to a connection whatever a test wants.
+//! A test server: a closure decides what each connection gets.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -18,8 +18,8 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// `act` gets the number of earlier requests, the request (head and body) and the connection, and writes what it
-    /// likes. If it returns true, the connection stays open for another request.
+    /// `act` gets the number of earlier requests, the request (head and body) and the connection, and writes the response.
+    /// If it returns true, the connection stays open for another request.
     pub(crate) fn start(act: impl Fn(usize, &str, &mut TcpStream) -> bool + Send + Sync + 'static) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();

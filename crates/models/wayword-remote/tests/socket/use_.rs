@@ -74,7 +74,7 @@ fn a_recording_answers_without_any_service() {
 }
 
 #[test]
-fn a_spent_bound_stops_and_says_how_to_go_on() {
+fn a_spent_budget_stops_with_a_hint_how_to_continue() {
     let server = echo();
     let limits = Limits { max_calls: Some(2), ..Limits::default() };
     let run = Ledger::in_memory().unwrap().run("test", limits).unwrap();
@@ -87,7 +87,7 @@ fn a_spent_bound_stops_and_says_how_to_go_on() {
 }
 
 #[test]
-fn what_a_call_costs_is_reckoned_and_bounded() {
+fn the_cost_of_a_call_is_computed_and_limited() {
     let server = echo();
     let row = "\"server/m\" = { usd_per_million_in = 1e5, usd_per_million_out = 1e5, as_of = \"2026-01-01\" }";
     let ledger = Ledger::in_memory().unwrap();
@@ -112,7 +112,7 @@ fn what_a_call_costs_is_reckoned_and_bounded() {
 }
 
 #[test]
-fn a_picture_goes_out_as_jpeg_and_stands_in_the_ledger_as_its_hash() {
+fn a_picture_is_sent_as_jpeg_and_stored_as_a_hash() {
     let server = Server::start(|_, _, stream| reply(stream, 200, "", &answer("Red.")));
     let folder = tempfile::tempdir().unwrap();
     let run = run();
@@ -152,7 +152,7 @@ fn a_bound_on_money_needs_prices() {
 
 /// A provider that is free on your own machine may be a paid service elsewhere.
 #[test]
-fn what_is_said_not_to_be_local_is_not_free() {
+fn a_provider_that_is_not_local_is_not_free() {
     let mut config: Config = toml::from_str("[providers.ollama]\nlocal = false").unwrap();
     config.needs_prices = true;
     let services = Services::new(config, run()).unwrap();
@@ -160,9 +160,9 @@ fn what_is_said_not_to_be_local_is_not_free() {
     assert!(services.model("vllm/qwen3").is_ok());
 }
 
-/// Otherwise one such answer would delay all requests for years.
+/// If the program believed the count, one answer would delay all requests for years.
 #[test]
-fn a_count_of_tokens_that_cannot_be_is_not_believed() {
+fn an_impossible_count_of_tokens_is_replaced_by_an_estimate() {
     let server = Server::start(|_, _, stream| {
         let usage = r#""usage":{"prompt_tokens":18446744073709551615,"completion_tokens":18446744073709551615}"#;
         reply(stream, 200, "", &format!(r#"{{"choices":[{{"message":{{"content":"fine"}}}}],{usage}}}"#))
@@ -189,7 +189,7 @@ fn settings_that_make_no_sense_are_refused() {
     }
 }
 
-/// What `check` finds, one line each.
+/// The findings of `check`: level and text.
 fn findings(server: &Server) -> Vec<(Level, String)> {
     services(server, "attempts = 1", &run())
         .check("server/m", true)
@@ -199,7 +199,7 @@ fn findings(server: &Server) -> Vec<(Level, String)> {
 }
 
 #[test]
-fn a_model_that_works_is_found_to() {
+fn check_finds_no_problem_with_a_working_model() {
     let server = Server::start(|_, request, stream| {
         let body = if request.starts_with("GET") { r#"{"data":[{"id":"m"}]}"#.to_owned() } else { answer("Red") };
         reply(stream, 200, "", &body)
@@ -216,7 +216,7 @@ fn a_model_that_works_is_found_to() {
 }
 
 #[test]
-fn a_model_that_is_blind_or_not_there_is_found_to_be() {
+fn check_finds_a_model_that_is_blind_or_missing() {
     let server = Server::start(|_, request, stream| {
         let body = if request.starts_with("GET") { r#"{"data":[{"id":"other"}]}"#.to_owned() } else { answer("Blue") };
         reply(stream, 200, "", &body)
@@ -230,7 +230,7 @@ fn a_model_that_is_blind_or_not_there_is_found_to_be() {
 
 /// An answer in the ledger does not show that the model works now.
 #[test]
-fn a_check_is_not_answered_by_an_earlier_one() {
+fn check_ignores_answers_of_earlier_checks() {
     let works = Arc::new(AtomicBool::new(true));
     let seen = Arc::clone(&works);
     let server = Server::start(move |_, request, stream| match request.starts_with("GET") {
