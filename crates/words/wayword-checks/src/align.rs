@@ -1,8 +1,9 @@
-//! Maps what a text says, in its order, to the frames and moves of the path.
+//! Maps the statements of a text, in its order, to the frames and moves of the path.
 //!
 //! A place is mapped to a frame that shows it, a turn to a move that makes it, or to a bend of up to three moves. The
 //! frames of places never go back. Each turn needs a move of its own, after the last move of the turn before. A turn
-//! and the places around it must be near each other. The search fails only where no mapping fits.
+//! and the places around it must be near each other. The search goes through the text step by step and keeps every
+//! state that can still win, so it fails only if no mapping fits.
 
 use crate::evidence::Evidence;
 use wayword_core::{Side, motion};
@@ -16,7 +17,7 @@ pub(super) enum Step {
     Turn(Side),
     /// Going on, however short the way.
     Onward,
-    /// Something that has no place in the order.
+    /// A statement without a place in the order.
     Free,
 }
 
@@ -66,10 +67,10 @@ pub(super) fn align(steps: &[Step], evidence: &Evidence) -> Result<Vec<Option<us
 /// The states that no other one dominates, least first. A state dominates another where neither its place nor its turn
 /// nor its next move is later.
 ///
-/// Dropping a dominated state loses nothing. A step only asks for frames and moves that are not before these three
-/// numbers, so whatever can follow the dominated state can follow the other one too, and the states that come of it
-/// dominate again. However long the text and the path are, a handful of states is kept; all of them would be as many as
-/// the square of the path's length.
+/// Dropping a dominated state is safe. A step only asks for frames and moves that are not before these three numbers,
+/// so whatever can follow the dominated state can follow the other one too, and the states that come of it dominate
+/// again. However long the text and the path are, a handful of states is kept; all of them would be as many as the
+/// square of the path's length.
 fn undominated(mut reached: Vec<Reached>) -> Vec<Reached> {
     // A state that dominates another one comes before it.
     reached.sort_by_key(|reached| reached.state);
@@ -210,7 +211,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_dropped_could_not_have_gone_farther(
+        fn dropped_states_could_not_have_gone_farther(
             steps in prop::collection::vec(step(), 0..6),
             turns in prop::collection::vec(prop_oneof![Just(0.0), Just(20.0), Just(-40.0), Just(70.0), Just(170.0)], 0..6),
         ) {

@@ -1,11 +1,12 @@
-//! Clauses that the reader did not understand, and languages that it does not read.
+//! Checks that the program can read the text: clauses that the reader did not understand, and languages that it does
+//! not know.
 
 use super::{finding, pass};
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::{Language, reading::Reading};
 
-/// What of a text was not understood: such a text is unverified, and never right. `language` is that of its words, or
-/// the one that its file names.
+/// The parts of a text that were not understood. A text with any is unverified, however right the rest is. `language`
+/// is that of its words, or the one that its file names.
 pub(super) fn coverage(reading: &Reading, language: Language) -> Vec<Finding> {
     if let Language::Other(name) = language {
         let reason = format!("the text is in {name}, and the program reads English");

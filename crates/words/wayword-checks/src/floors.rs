@@ -1,4 +1,4 @@
-//! Storeys and stairs.
+//! Checks storeys and stairs: climbs that the path does not make, and storeys that it does not pass.
 
 use super::{finding, or_pass};
 use crate::evidence::Evidence;
@@ -22,7 +22,7 @@ pub(super) fn floors(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
     or_pass(Check::Floors, stairs.chain(wrong_floors(reading, evidence)).collect())
 }
 
-/// What is wrong with the storeys that a text names.
+/// The first storey of a text that is wrong or cannot be checked.
 pub(super) fn wrong_floors(reading: &Reading, evidence: &Evidence) -> Option<Finding> {
     let levels: Vec<Option<u32>> = evidence.frames.iter().map(|frame| frame.level).collect();
     wrong_floor(&told(reading), reading, &levels)
@@ -75,7 +75,7 @@ fn told(reading: &Reading) -> Vec<(&Event, Floor)> {
     told
 }
 
-/// What is wrong with the storeys of a text. The path has to pass them in their order, and to end on the last one where
+/// The first wrong storey of a text. The path has to pass the storeys in their order, and to end on the last one where
 /// the text names that as the goal.
 fn wrong_floor(told: &[(&Event, Floor)], reading: &Reading, levels: &[Option<u32>]) -> Option<Finding> {
     let wrong = |verdict: Verdict, (event, floor): &(&Event, Floor)| {

@@ -1,4 +1,4 @@
-//! Sentences and words, as the style demands.
+//! Checks the numbers of sentences and words that the style demands.
 
 use super::{finding, or_pass};
 use wayword_core::{Check, Constraints, Finding, Verdict};

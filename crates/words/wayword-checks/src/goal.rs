@@ -1,4 +1,5 @@
-//! Where a text ends: what it stops at is seen from the end and near it, and the room is the end's.
+//! Checks where a text ends: its last landmark has to be seen from the end and near it, and its last room has to be
+//! the path's.
 
 use super::finding;
 use crate::evidence::{Evidence, FrameEvidence, Source};
@@ -8,17 +9,17 @@ use wayword_language::{
     reading::{Event, Link, Place, Reading, What},
 };
 
-/// "Stop by the sofa": its centre is no farther than this from the eye, metres. That is 2 m along the floor for what
-/// stands on it.
+/// "Stop by the sofa": its centre is no farther than this from the eye, metres. For things on the floor that is 2 m
+/// along the floor.
 const NEAR_M: f64 = 2.5;
 
-/// What is wrong with the end of a text. `object`: the task's, which has a check of its own.
+/// The mistake at the end of a text, if there is one. `object`: the task's, which has a check of its own.
 pub(super) fn goal(reading: &Reading, evidence: &Evidence, object: Option<usize>) -> Option<Finding> {
     if evidence.source == Source::Nothing {
         return None;
     }
     let last = evidence.frames.len().checked_sub(1)?;
-    // Captions tell no distances: who has arrived may have passed what he stops at by a step.
+    // Captions give no distances: a walker at the end may have passed the landmark by one step.
     let first = if evidence.source == Source::Labels { last } else { last.saturating_sub(1) };
     let near = &evidence.frames[first..];
     let wrong = |(at, place): (usize, &Place)| {

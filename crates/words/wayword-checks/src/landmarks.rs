@@ -1,4 +1,5 @@
-//! Each landmark needs a frame that shows it.
+//! Checks that each landmark of a text is shown by a frame of the path, on the side and in the colour that the text
+//! gives it.
 
 use super::{finding, or_pass, sides};
 use crate::{
@@ -12,24 +13,24 @@ use wayword_language::{
     reading::{Link, Place, Reading, What},
 };
 
-/// What was found about the places of a text.
+/// The findings about the places of a text, and the frames that show them.
 pub(super) struct Places {
     pub(super) findings: Vec<Finding>,
     /// For each event of the reading, the frames that show it.
     pub(super) shown: Vec<Shown>,
 }
 
-/// Where a place is seen; both empty for what is no place.
+/// The frames that show a place; both lists are empty for an event that is no place.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shown {
     /// The frames that show it.
     pub(super) frames: Vec<usize>,
-    /// The frames of which it is not known whether they show it.
+    /// The frames that may show it, because their objects or rooms are not known.
     pub(super) unknown: Vec<usize>,
 }
 
-/// Checks each place of a text. Whether the object of a task (`object`) is there is left to the check of the task. Where
-/// the witnesses' silence means that the writer made a thing up (`made_up`), it is wrong.
+/// Checks each place of a text. The object of a task (`object`) is left to the check of the task. If `made_up` is
+/// true, a place that no witness names counts as invented by the writer, and is wrong.
 pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<usize>, made_up: bool) -> Places {
     let (mut findings, mut all_shown) = (Vec::new(), Vec::new());
     let seen = Seen::of(evidence);
@@ -60,7 +61,7 @@ pub(super) fn landmarks(reading: &Reading, evidence: &Evidence, object: Option<u
     Places { findings: or_pass(Check::Landmarks, findings), shown: all_shown }
 }
 
-/// What is wrong with where the text puts a place: it is nowhere along the path, or on another side.
+/// The mistake in where the text puts a place: it is nowhere along the path, or on another side.
 fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) -> Option<(Verdict, String)> {
     if shown.frames.is_empty() && is_beyond(place, evidence) {
         return None;
@@ -78,12 +79,13 @@ fn presence(place: &Place, shown: &Shown, evidence: &Evidence, made_up: bool) ->
     }
     let side = sides::wrong_side(place, &shown.frames, evidence)?;
     let reason = format!("{:?} is not on the {} where the path passes it", place.name, sides::word(side));
-    // Captions miss things, so one may stand on the other side too. Who wrote from them cannot know of it.
+    // Captions miss things, so one may be on the other side too. A writer that used only captions cannot know of it.
     let may_be_missed = evidence.source.leaves_out() && !made_up;
     Some((if may_be_missed { Verdict::Unverified } else { wrong_unless_elsewhere(shown) }, reason))
 }
 
-/// Whether a text names a room beside the one at the end, or a thing in it, only to tell which room or thing it means.
+/// Whether a text mentions a room next to the one at the end, or a thing in it, only to identify that room or a thing
+/// there.
 pub(crate) fn is_beyond(place: &Place, evidence: &Evidence) -> bool {
     // Every building has these.
     if matches!(&*place.name, "wall" | "floor" | "ceiling") && place.side.is_none() && place.colour.is_none() {
@@ -96,12 +98,13 @@ pub(crate) fn is_beyond(place: &Place, evidence: &Evidence) -> bool {
     tells_which && (is_room() || is_thing())
 }
 
-/// The verdict on a place that is wrong wherever it is seen. It may still be right where it is not known what is seen.
+/// The verdict on a place that is wrong at every frame that shows it. It may still be right at frames with unknown
+/// objects.
 fn wrong_unless_elsewhere(shown: &Shown) -> Verdict {
     if shown.unknown.is_empty() { Verdict::Fail } else { Verdict::Unverified }
 }
 
-/// What is wrong with the colour that the text gives a place.
+/// The mistake in the colour that the text gives a place.
 fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict, String)> {
     let told = place.colour.as_ref()?;
     let things =
@@ -121,16 +124,16 @@ fn colour(place: &Place, shown: &Shown, evidence: &Evidence) -> Option<(Verdict,
     }
 }
 
-/// The evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is compared with
-/// each name once.
+/// The evidence, sorted by name. A path shows a few dozen names over and over, so each place of a text is compared
+/// with each name once.
 struct Seen<'a> {
     evidence: &'a Evidence,
     frames_of_things: BTreeMap<&'a str, Vec<usize>>,
-    /// The frames beside a door or doorway through which the walk leads.
+    /// The frames on both sides of a door or doorway through which the walk leads.
     doors: Vec<usize>,
 }
 
-/// Whether a name means what one goes through between rooms. A change of rooms shows it, whether or not labels list it.
+/// Whether a name means an opening between rooms. A change of rooms shows it, even if labels do not list it.
 fn is_door(name: &str) -> bool {
     matches!(name, "door" | "doorway" | "opening" | "entrance" | "exit" | "threshold")
 }

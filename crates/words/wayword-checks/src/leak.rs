@@ -1,4 +1,5 @@
-//! Words copied from the reference texts.
+//! Finds words that a text copied from the reference texts of its style. Otherwise a writer could score well by
+//! repeating them.
 
 use super::{Subject, finding, pass};
 use std::{
@@ -17,7 +18,7 @@ pub const LONG_RUN: usize = 10;
 /// So are this many, where they speak of something that is not this text's own matter, and where fewer than
 /// [`FORMULA`] references hold them.
 pub const SHARED_RUN: usize = 6;
-/// What this many references say is nobody's own.
+/// A run that this many references share is a formula, and no copy from one of them.
 pub const FORMULA: u8 = 3;
 /// A run that our own writer avoids where it can, though it may be a formula.
 const AVOIDED_RUN: usize = 8;
@@ -31,7 +32,7 @@ pub struct Copies {
     long: HashSet<u64>,
 }
 
-/// What a text is about. Words for it are its own, whoever used them before.
+/// The subject of a text. Words for it are no copy, even if a reference has them too.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Matter<'a> {
     /// The name of its target.
@@ -138,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_text_is_about_is_its_own() {
+    fn words_for_the_topic_are_no_copy() {
         let references = ["Go to the pantry on level 2 and salt the ham"];
         let rooms = ["pantry".to_owned()];
         let own = Matter { target: Some("ham"), rooms: &rooms };
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_three_references_say_is_a_formula_up_to_ten_words() {
+    fn a_run_in_three_references_is_a_formula_up_to_ten_words() {
         let text = "polish the brass rail beside the oak bench near the altar";
         let one = text.to_owned();
         let others = ["polish the brass rail beside the cat", "do polish the brass rail beside the dog"];

@@ -1,9 +1,10 @@
-//! Checks a text against the evidence of its path. It reads the words alone, whoever wrote them.
+//! Checks a text against the evidence of its path. Only the words count: texts of people, models and rules are checked
+//! alike.
 //!
-//! [`Evidence`] says what is known of a path, from labels or from captions. Each check is a file here. `align` maps the
-//! statements of a text to the frames of the path, for the checks that need their order.
+//! [`Evidence`] holds the rooms, objects and moves of a path, from labels or from captions. Each check is a file here.
+//! `align` maps the statements of a text to the frames of the path, for the checks that need their order.
 //!
-//! Architecture invariant: nothing here knows a writer, a prompt or a plan.
+//! Architecture invariant: this crate knows no writer, prompt or plan.
 
 mod align;
 mod coverage;
@@ -40,24 +41,24 @@ pub use memory::Memory;
 pub use witnesses::{Testimony, lift};
 pub use world::{Reach, Turns, World};
 
-/// What a text is checked against.
+/// A text's evidence, style and world: everything that it is checked against.
 #[derive(Debug, Clone, Copy)]
 pub struct Subject<'a> {
-    /// What is known of the path.
+    /// The rooms, objects and moves of the path.
     pub evidence: &'a Evidence,
     /// The style that the text has to follow.
     pub style: &'a Style,
     /// The object that its task has to be about, where one was given.
     pub target: Option<&'a Target>,
-    /// What the silence of the evidence means.
+    /// The meaning of missing evidence.
     pub world: World,
-    /// What an open world knows beyond the frames.
+    /// Knowledge of an open world beyond the frames.
     pub reach: Reach<'a>,
-    /// Who judges the turns in an open world.
+    /// The judge of the turns in an open world.
     pub turns: Turns,
     /// The language that the text's file names for it, as a tag: "en-IN".
     pub tag: Option<&'a str>,
-    /// Whether the writer saw the pictures, and not only what was said of them.
+    /// Whether the writer saw the pictures, and not only their captions.
     pub writer_sees: bool,
     /// The index of the style's reference texts; where there is none, it is made for each text.
     pub copies: Option<&'a Copies>,
@@ -87,7 +88,7 @@ impl<'a> Subject<'a> {
         Self { copies: Some(copies), ..self }
     }
 
-    /// A text that somebody else wrote.
+    /// A text by another author.
     #[must_use]
     pub fn open(evidence: &'a Evidence, style: &'a Style, reach: Reach<'a>) -> Self {
         Self { world: World::Open, reach, ..Self::closed(evidence, style, None) }
@@ -101,13 +102,13 @@ pub struct Checked {
     pub findings: Vec<Finding>,
     /// The landmarks, rooms, turns, storeys and target that the text mentions, each with its frame.
     pub mentions: Vec<Mention>,
-    /// The world that the text was held against.
+    /// The world that it was checked in.
     pub world: World,
 }
 
 impl Checked {
-    /// The verdict of all checks together: the worst of them. Where the world is closed, an unverified route is left out, so
-    /// a text can pass beside such a finding: the other checks know all that it may say.
+    /// The verdict of all checks together: the worst of them. In a closed world, an unverified route is left out, so a
+    /// text can pass in spite of such a finding: the other checks know everything that such a text may claim.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let is_left_out = |finding: &&Finding| {
@@ -125,7 +126,8 @@ pub fn check(text: &str, subject: Subject<'_>) -> Checked {
     held(text, subject, false)
 }
 
-/// `from_captions_alone`: the text was written from the captions alone, so that what none of them names was made up.
+/// Runs all checks. `from_captions_alone`: the text was written from the captions alone, so a thing that none of them
+/// names was made up.
 fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked {
     let whole = read(text, &names(subject.evidence));
     let reading = whole.clone().claims();
@@ -155,8 +157,9 @@ fn held(text: &str, subject: Subject<'_>, from_captions_alone: bool) -> Checked 
     Checked { mentions: mentions(&reading, &walk.frames), findings, world: subject.world }
 }
 
-/// Checks a text that this program wrote. It is stricter than [`check`]: where the motion is unknown, the writer made
-/// up any turn, side, storey or distance that the text names, while somebody else may have seen the place.
+/// Checks a text that this program wrote. It is stricter than [`check`]: where the motion is unknown, the writer must
+/// have invented any turn, side, storey or distance that the text names, while another author may have been at the
+/// place.
 #[must_use]
 pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
     let from_captions_alone = subject.evidence.source == Source::Captions && !subject.writer_sees;
@@ -175,7 +178,7 @@ pub fn check_own(text: &str, subject: Subject<'_>) -> Checked {
 }
 
 /// How many objects at the end of a path the task of a text may mean; 0 where it names none, or none is known there. A
-/// side, a colour or a neighbour ("the lamp by the desk") tells them apart.
+/// side, a colour or a neighbour ("the lamp by the desk") narrows them down.
 #[must_use]
 pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     let reading = read(text, &names(evidence)).claims();
@@ -199,7 +202,7 @@ pub fn objects_meant(text: &str, evidence: &Evidence) -> usize {
     if has_neighbour { meant.min(1) } else { meant.max(usize::from(!alike.is_empty())) }
 }
 
-/// Most bytes between an object and the neighbour that it is told by: " that is closest to the ".
+/// Most bytes between an object and the neighbour that identifies it: " that is closest to the ".
 const MOST_BETWEEN: usize = 24;
 
 /// The names of all objects that are known along a path. The reader has to recognise them.
@@ -224,8 +227,8 @@ fn mentions(reading: &Reading, frames: &[Option<usize>]) -> Vec<Mention> {
 }
 
 impl Checked {
-    /// Adds what somebody else found. A check that passed before and fails or is unverified now no longer passes. What
-    /// the same check said of the same words before is not said twice.
+    /// Adds findings of another judge. A check that passed before and fails or is unverified now no longer passes. A
+    /// finding is skipped if the same check already has the same verdict on the same words.
     pub fn add(&mut self, found: impl IntoIterator<Item = Finding>) {
         for finding in found {
             let is_same = |other: &Finding| match (other.span, finding.span) {
@@ -245,7 +248,7 @@ impl Checked {
     }
 }
 
-/// Adds what a second look at the same check found, unless it was found before.
+/// Adds the finding of a second look by the same check, unless the first look was at least as bad.
 fn add_worse(findings: &mut Vec<Finding>, wrong: Finding) {
     let is_same = |other: &Finding| other.check == wrong.check && other.span == wrong.span;
     if findings.iter().any(|other| is_same(other) && other.verdict >= wrong.verdict) {
@@ -255,12 +258,12 @@ fn add_worse(findings: &mut Vec<Finding>, wrong: Finding) {
     findings.push(wrong);
 }
 
-/// A check that found nothing wrong.
+/// The finding of a check without mistakes.
 fn pass(check: Check) -> Finding {
     Finding { check, verdict: Verdict::Pass, reason: String::new(), span: None }
 }
 
-/// A check that found something wrong, or that has no evidence to decide it by.
+/// A finding of a mistake, or of missing evidence.
 fn finding(check: Check, verdict: Verdict, reason: impl Into<String>, span: Option<[usize; 2]>) -> Finding {
     Finding { check, verdict, reason: reason.into(), span }
 }

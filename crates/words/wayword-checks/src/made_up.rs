@@ -1,4 +1,5 @@
-//! What a text says about a motion that is not known.
+//! Finds statements about the motion in texts of our own writers where the motion is unknown. The writer cannot know
+//! them, so it invented them.
 
 use super::finding;
 use std::collections::BTreeSet;
@@ -36,7 +37,7 @@ pub(super) fn made_up(text: &str, known: &BTreeSet<String>) -> Vec<Finding> {
     .collect()
 }
 
-/// What an author has to know of the motion to say so, and the check that decides it where the motion is known.
+/// The fact that an author needs to know for a statement, and the check that decides it where the motion is known.
 fn told(event: &Event) -> Option<(Check, &'static str)> {
     match &event.what {
         What::Turn(_) => Some((Check::Turns, "how the path turns")),

@@ -1,4 +1,4 @@
-//! Landmarks and turns in the order of the path.
+//! Checks that landmarks and turns come in the order of the path.
 
 use super::{
     align::{Step, align},
@@ -10,7 +10,7 @@ use crate::evidence::Evidence;
 use wayword_core::{Check, Finding, Side, Verdict};
 use wayword_language::reading::{Event, Link, Reading, What};
 
-/// What was found about the order of a text.
+/// The findings about the order of a text.
 pub(super) struct Order {
     pub(super) findings: Vec<Finding>,
     /// The frame of each event of the reading, where it has one.
@@ -60,7 +60,8 @@ pub(super) fn order(reading: &Reading, evidence: &Evidence, shown: &[Shown]) -> 
     Order { findings, frames }
 }
 
-/// Maps steps to the path. What does not fit fails only where it would not fit either if the unknown frames showed it.
+/// Maps steps to the path. A text that does not fit fails only if it would not fit either if the unknown frames showed
+/// its places.
 fn lay(certain: &[Step], possible: &[Step], evidence: &Evidence) -> (Verdict, Result<Vec<Option<usize>>, usize>) {
     let laid = align(certain, evidence);
     let verdict = match &laid {
@@ -78,7 +79,7 @@ fn places_alone(steps: &[Step]) -> Vec<Step> {
         .collect()
 }
 
-/// For each event, whether it is a place that only says where another place of its clause, or the task's object, is.
+/// For each event, whether it is a place that only locates another place of its clause, or the task's object.
 fn asides(reading: &Reading) -> Vec<bool> {
     let object = reading.task.as_ref().and_then(|task| task.object);
     // The clause's number, whether it has named a place so far, and whether it has named a goal.
@@ -149,7 +150,7 @@ fn step(event: &Event, shown: Vec<usize>, evidence: &Evidence) -> Step {
     }
 }
 
-/// The events in the order in which the path meets them: a place that says where to turn comes before that turn.
+/// The events in the order in which the path meets them: the place of a turn comes before that turn.
 fn in_order_of_walk(events: &[Event]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..events.len()).collect();
     for at in 1..events.len() {

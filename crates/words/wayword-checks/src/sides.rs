@@ -1,4 +1,4 @@
-//! Left and right of somebody who walks the path.
+//! Left and right for a walker on the path: whether a thing is on the side that a text gives it.
 
 use crate::evidence::Evidence;
 use std::f64::consts::{PI, TAU};

@@ -1,4 +1,4 @@
-//! The closing task.
+//! Checks the closing task: its object has to be at the end of the path, and be the target.
 
 use super::{
     Subject, World, finding, pass,

@@ -1,4 +1,4 @@
-//! What the checks say about texts on made-up paths.
+//! Tests of the checks, on texts about invented paths.
 
 use super::{Subject, check, check_own, objects_meant};
 use crate::evidence::{Evidence, FrameEvidence, SeenThing, Source};
@@ -76,7 +76,7 @@ fn is_unverified(check: Check, text: &str, evidence: &Evidence) {
 }
 
 #[test]
-fn the_object_of_a_task_that_nobody_asked_for_is_a_landmark() {
+fn the_object_of_an_unrequested_task_is_a_landmark() {
     let path = to_the_bedroom();
     passes("Walk to the bedroom and clean the lamp.", &path);
     fails(Check::Landmarks, "Walk to the bedroom and clean the piano.", &path);
@@ -87,7 +87,7 @@ fn the_object_of_a_task_that_nobody_asked_for_is_a_landmark() {
 }
 
 #[test]
-fn what_may_be_where_nobody_knows_is_not_denied() {
+fn a_place_may_be_at_a_frame_with_unknown_objects() {
     let known = to_the_bedroom();
     fails(Check::Landmarks, "Walk past the piano into the bedroom.", &known);
     fails(Check::Landmarks, "Walk through the kitchen into the bedroom.", &known);
@@ -98,7 +98,7 @@ fn what_may_be_where_nobody_knows_is_not_denied() {
     // The final viewpoint is known, and that is all that its task needs.
     let task = |text: &str| told_in(text, &unknown, &style(true));
     assert_eq!(task("Go to the bedroom and clean the piano"), (Verdict::Fail, vec![Check::Task]));
-    // A viewpoint whose list of objects is empty shows none.
+    // A viewpoint with an empty list of objects shows none.
     let mut bare = known;
     bare.frames[1] = frame("hallway", Some(&[]), 1);
     fails(Check::Landmarks, "Walk past the piano into the bedroom.", &bare);
@@ -115,7 +115,7 @@ fn an_order_that_the_unknown_may_save_is_not_denied() {
 }
 
 #[test]
-fn a_room_in_which_one_is_said_to_be_has_to_be_on_the_path() {
+fn a_room_that_the_walker_is_in_has_to_be_on_the_path() {
     let path = to_the_bedroom();
     for text in [
         "Walk down the hallway and stop in the kitchen.",
@@ -136,7 +136,7 @@ fn a_room_in_which_one_is_said_to_be_has_to_be_on_the_path() {
 }
 
 #[test]
-fn what_only_tells_where_a_goal_is_holds_no_place_in_the_order() {
+fn a_place_that_only_locates_a_goal_is_free_in_the_order() {
     let frames = vec![
         frame("bedroom", Some(&["bed"]), 1),
         frame("living room", Some(&["sofa"]), 1),
@@ -171,7 +171,7 @@ fn by_stairs(from: u32, to: u32) -> Evidence {
 }
 
 #[test]
-fn who_is_told_to_climb_has_to_climb() {
+fn a_command_to_climb_needs_a_climb() {
     for text in ["Go upstairs and stop in the bathroom.", "Walk up one floor and stop in the bathroom."] {
         passes(text, &by_stairs(1, 2));
         fails(Check::Floors, text, &flat(2));
@@ -218,12 +218,12 @@ fn how_many_floors_there_are_is_not_known() {
 }
 
 #[test]
-fn what_is_not_to_be_done_is_not_held_against_a_text() {
+fn denied_actions_are_not_checked() {
     passes("Do not turn left. Walk past the sofa, don't enter the kitchen and stop in the bedroom.", &to_the_bedroom());
 }
 
 #[test]
-fn nobody_walks_on_where_the_path_goes_nowhere() {
+fn walking_on_fails_on_a_path_without_moves() {
     let standing = walk(vec![frame("kitchen", Some(&["sink"]), 1)], &[]);
     fails(Check::Turns, "Walk straight ahead and stop at the sink.", &standing);
     fails(Check::Turns, "Continue through the kitchen and stop at the sink.", &standing);
@@ -238,7 +238,7 @@ fn on_video() -> Evidence {
 }
 
 #[test]
-fn of_an_unknown_motion_turns_floors_and_sides_are_neither_right_nor_wrong() {
+fn turns_floors_and_sides_of_an_unknown_motion_are_unverified() {
     for text in [
         "Walk past the sofa and turn right into the bedroom.",
         "Walk past the sofa and turn left into the bedroom.",
@@ -264,7 +264,7 @@ fn of_an_unknown_motion_turns_floors_and_sides_are_neither_right_nor_wrong() {
 }
 
 #[test]
-fn of_an_unknown_motion_places_and_their_order_are_held_against_what_was_seen() {
+fn places_of_an_unknown_motion_are_checked_in_their_order() {
     passes("Walk straight past the sofa into the bedroom and stop at the bed.", &on_video());
     fails(Check::Landmarks, "Walk past the piano into the bedroom.", &on_video());
     fails(Check::Order, "Walk past the lamp and pass the rug, then stop.", &on_video());
@@ -274,7 +274,7 @@ fn of_an_unknown_motion_places_and_their_order_are_held_against_what_was_seen() 
 }
 
 #[test]
-fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
+fn check_own_fails_statements_about_an_unknown_motion() {
     let own = |text: &str, evidence: &Evidence| {
         let checked = check_own(text, Subject::closed(evidence, &style(false), None));
         let failed = checked.findings.into_iter().filter(|finding| finding.verdict == Verdict::Fail);
@@ -315,7 +315,7 @@ fn a_text_of_our_own_tells_nothing_of_an_unknown_motion() {
 }
 
 #[test]
-fn an_object_that_the_text_tells_apart_is_one() {
+fn objects_meant_counts_one_object_that_the_text_identifies() {
     let mut evidence = to_the_bedroom();
     let lamp = |colour: &str, turn_rad: f64| SeenThing {
         name: "lamp".into(),
@@ -347,7 +347,7 @@ fn a_text_stops_at_a_thing_that_is_near_the_end() {
     at(&mut path, 3.4);
     fails(Check::Landmarks, "Walk into the bedroom and stop by the lamp.", &path);
     passes("Walk into the bedroom, past the lamp.", &path);
-    // What is seen on the way, and not where the path ends.
+    // A thing that is seen on the way, but not where the path ends.
     fails(Check::Landmarks, "Walk down the hallway and stop at the sofa.", &path);
 }
 
@@ -361,7 +361,7 @@ fn the_room_that_is_the_goal_is_that_of_the_last_frame() {
 }
 
 #[test]
-fn a_finish_is_read_before_a_piece_and_held_against_what_was_seen() {
+fn a_colour_before_a_thing_is_read_and_checked() {
     let mut path = to_the_bedroom();
     let dresser =
         |colour: &str| SeenThing { name: "dresser".into(), colour: Some(colour.into()), ..SeenThing::default() };

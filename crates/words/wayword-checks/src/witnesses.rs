@@ -1,4 +1,4 @@
-//! Other writers' texts of the same path, as witnesses.
+//! Compares a text with other authors' texts about the same path, which serve as witnesses.
 
 use crate::{Checked, evidence::Evidence, names};
 use wayword_core::{Check, Climb, Finding, Side, Verdict};
@@ -8,7 +8,7 @@ use wayword_language::{
     text::words,
 };
 
-/// What a text says, for the texts beside it.
+/// The statements of a text, as testimony for other texts about the same path.
 #[derive(Debug, Clone)]
 pub struct Testimony {
     events: Vec<Event>,
@@ -17,7 +17,7 @@ pub struct Testimony {
 }
 
 impl Testimony {
-    /// What a text says of a path.
+    /// Reads the statements of a text about a path.
     #[must_use]
     pub fn of(text: &str, evidence: &Evidence) -> Self {
         Self { events: read(text, &names(evidence)).claims().events, words: words(text) }
@@ -31,7 +31,7 @@ impl Testimony {
         })
     }
 
-    /// Whether it says the same as an event of another text.
+    /// Whether it makes the same statement as an event of another text.
     fn confirms(&self, event: &Event, own: &Self) -> bool {
         match &event.what {
             What::Place(place) => self.events.iter().any(|other| names_same(other, place)),
@@ -64,9 +64,9 @@ fn climbs(event: &Event) -> Option<Climb> {
     }
 }
 
-/// Lifts to "unverified" what fails, where another writer's text of the same path says the same: a room, an object, a
-/// climb, or a turn at the same place among the turns. What a text says twice is its own fault, and a copy of the text, with
-/// other marks or spaces, says nothing of it.
+/// Lifts a failure to "unverified" where another author's text about the same path makes the same statement: a room,
+/// an object, a climb, or a turn at the same place among the turns. A repetition within a text stays its own fault,
+/// and a copy of the text, with other marks or spaces, is no witness.
 pub fn lift(checked: &mut Checked, own: &Testimony, others: &[&Testimony]) {
     let others: Vec<&&Testimony> = others.iter().filter(|other| other.words != own.words).collect();
     for finding in &mut checked.findings {

@@ -1,15 +1,15 @@
-//! The two worlds that a text can be held against.
+//! The closed and the open world of a check: the two meanings of missing evidence.
 
 use crate::{evidence::Surroundings, open::Calibration};
 use wayword_core::Provenance;
 
-/// What the silence of the evidence means.
+/// The meaning of missing evidence.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum World {
-    /// The text was written from this evidence: what the evidence does not show is wrong.
+    /// The text was written from this evidence: a thing that the evidence does not show is wrong.
     #[default]
     Closed,
-    /// Somebody else wrote the text: an absence counts only if the evidence would have shown the thing.
+    /// Another author wrote the text: an absence counts only if the evidence would have shown the thing.
     Open,
 }
 
@@ -24,7 +24,7 @@ impl World {
     }
 
     /// The world of a record's text. It is closed only where the text was written and checked on this platform,
-    /// against the evidence that is at hand now, and whoever answered the questions about it is the source of that
+    /// against the evidence that is at hand now, and the questions about it were answered from the source of that
     /// evidence.
     #[must_use]
     pub fn of_record(provenance: &Provenance, made_on: &str, platform: &str, source: crate::Source) -> Self {
@@ -35,21 +35,22 @@ impl World {
     }
 }
 
-/// What an open world knows beyond the frames of the path. Without it, fewer things can be said.
+/// Knowledge of an open world beyond the frames of the path. Without it, fewer things can be decided.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reach<'a> {
-    /// What is listed around the path and elsewhere in the building.
+    /// The listed objects and rooms around the path and elsewhere in the building.
     pub surroundings: Option<&'a Surroundings>,
     /// Shares by the names of objects and rooms, made from a file that the user has.
     pub calibration: Option<&'a Calibration>,
 }
 
-/// Who judges the turns of a text in an open world: they fit a path or not only together with all that the text tells.
+/// The judge of the turns of a text in an open world. Turns fit a path or not only together with the rest of the walk,
+/// so they are judged by a comparison of whole walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turns {
-    /// Whoever compares whole walks, and adds what was found ([`crate::Checked::add`]).
+    /// A comparison of whole walks, which adds its findings ([`crate::Checked::add`]).
     JudgedElsewhere,
-    /// Nobody, for this reason: they are unverified.
+    /// No comparison, for this reason: the turns are unverified.
     NotJudged(&'static str),
 }
 

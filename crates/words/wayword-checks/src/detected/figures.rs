@@ -1,11 +1,12 @@
-//! How often a detector finds what is there and what is not, as measured on worlds with labels.
+//! How often a detector finds things that are there, and things that are not, as measured on worlds with labels.
 
 use crate::open::class_name;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_language::lexicon::{normal, thing};
 
-/// What was measured of a detector. A file of it is untrusted: every share is kept within bounds where it is used.
+/// A detector's measured rates. They may come from an untrusted file, so every share is kept within bounds where it is
+/// used.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DetectorFigures {
@@ -25,7 +26,7 @@ pub struct DetectorFigures {
     pub names: BTreeMap<String, Rates>,
 }
 
-/// How often things were found from frames that show them, and from frames that do not. A frame is all that was looked at
+/// How often things were found from frames that show them, and from frames that do not. A frame means all views
 /// from one place.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,9 +39,9 @@ pub struct Rates {
     pub absent: u32,
     /// Those among them that were found all the same.
     pub alarms: u32,
-    /// Pairs of frames of a path, one after the other, that both show a name, the first of which was missed.
+    /// Pairs of consecutive frames of a path that both show a name, where the detector missed it in the first.
     pub missed_before: u32,
-    /// Those among them in which the second was missed too.
+    /// Those among them in which it missed the second too.
     pub missed_again: u32,
     /// How many names of a path were shown by one frame of it, by two, and so on; the last counts longer runs too.
     pub runs: Vec<u32>,
@@ -52,12 +53,13 @@ const LONGEST_RUN: usize = 8;
 /// A single name has rates of its own from this many frames that show it, and as many that do not.
 const ENOUGH: u32 = 30;
 
-/// What is assumed where little was measured: half a find and half a miss in addition.
+/// Added to both parts of every share: half a find and half a miss. It keeps shares of few measurements away from 0
+/// and 1.
 const PRIOR: f64 = 0.5;
 
 impl DetectorFigures {
-    /// What is taken for a detector that nobody measured: it finds three of five things and is wrong about one in fifty, and
-    /// what it misses once it misses always. So nothing that it misses is absent.
+    /// Cautious figures for a detector that was never measured: it finds three of five things and is wrong about one
+    /// in fifty, and a thing that it misses once it misses always. So a miss never makes a thing absent.
     #[must_use]
     pub fn assumed(detector: &str, found_from: f32) -> Self {
         let all = Rates {
@@ -88,7 +90,7 @@ impl DetectorFigures {
         self.names.entry(normal(name)).or_default().count(frames);
     }
 
-    /// Forgets the names of which too little was seen, and those that the lexicon does not have.
+    /// Drops names with too few measurements, and names that the lexicon does not have.
     pub fn settle(&mut self) {
         let is_enough = |rates: &Rates| rates.shown >= ENOUGH && rates.absent >= ENOUGH;
         self.classes.retain(|_, rates| is_enough(rates));
@@ -122,20 +124,20 @@ impl Rates {
         }
     }
 
-    /// The share of what a frame shows that is found.
+    /// Of the things that a frame shows, the share that is found.
     #[must_use]
     pub fn recall(&self) -> f64 {
         share(self.found, self.shown)
     }
 
-    /// The share of what a frame does not show that is found all the same.
+    /// Of the things that a frame does not show, the share that is found all the same.
     #[must_use]
     pub fn alarm(&self) -> f64 {
         share(self.alarms, self.absent)
     }
 
-    /// The share of things to which the detector is blind: it misses them from every frame. What is missed again beyond
-    /// what independent misses would give is put down to them.
+    /// The share of things to which the detector is blind: it misses them from every frame. Repeated misses beyond
+    /// those that independent misses would give are attributed to it.
     #[must_use]
     pub fn blind(&self) -> f64 {
         let (miss, again) = (1.0 - self.recall(), share(self.missed_again, self.missed_before));
@@ -164,7 +166,7 @@ impl Rates {
     }
 }
 
-/// A share that is neither 0 nor 1, because nothing that was measured is certain.
+/// A share that is neither 0 nor 1, because no measurement is certain.
 fn share(part: u32, whole: u32) -> f64 {
     (f64::from(part.min(whole)) + PRIOR) / (f64::from(whole) + 2.0 * PRIOR)
 }

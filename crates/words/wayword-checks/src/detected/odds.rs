@@ -1,8 +1,9 @@
-//! From finds along a path to whether a thing is there.
+//! Bayes' rule for finds along a path: how probable it is that a thing is there, after the detector looked from every
+//! frame.
 
 use super::Rates;
 
-/// What the finds of a name along a path say.
+/// The conclusion from the finds of a name along a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judged {
     /// It is there.
@@ -13,12 +14,12 @@ pub enum Judged {
     Open,
 }
 
-/// The probability from which something is taken to be there: nine of ten such findings are right. A thing is absent only
-/// where it would have been found with the same probability, and its finds are as much likelier without it.
+/// The probability from which a thing is taken to be there: nine of ten such conclusions are right. A thing is absent
+/// only if it would have been found with the same probability, and its finds are as much likelier without it.
 const SURE: f64 = 0.9;
 
-/// Whether a thing is there, by the frames of a path in which it was found. `before` is the probability that it is there
-/// before anybody looked; an absence does not depend on it.
+/// Whether a thing is there, by the frames of a path in which it was found. `before` is the probability before the
+/// detector looked; an absence does not depend on it.
 #[must_use]
 pub fn judge(rates: &Rates, found: &[bool], before: f64) -> Judged {
     if found.is_empty() {
@@ -36,7 +37,7 @@ pub fn judge(rates: &Rates, found: &[bool], before: f64) -> Judged {
     }
 }
 
-/// The same detector without false alarms: with it, what was found was there.
+/// The same detector without false alarms: every find of it is real.
 fn silent(rates: &Rates) -> Rates {
     Rates { alarms: 0, absent: u32::MAX, ..rates.clone() }
 }
@@ -52,7 +53,7 @@ fn if_absent(rates: &Rates, found: &[bool]) -> f64 {
 fn if_there(rates: &Rates, found: &[bool]) -> f64 {
     let (alarm, blind) = (rates.alarm(), rates.blind());
     let seeing = ((rates.recall() / (1.0 - blind).max(f64::EPSILON)).min(1.0), 1.0 - blind);
-    // What is seen may be found by a false alarm as well.
+    // A thing in view may also be "found" by a false alarm.
     let hit = seeing.0 + (1.0 - seeing.0) * alarm;
     let one = |found: bool, hit: f64| if found { hit } else { 1.0 - hit };
     let within = |from: usize, to: usize| -> f64 {

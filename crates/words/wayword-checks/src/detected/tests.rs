@@ -1,3 +1,5 @@
+//! Tests of the conclusions from a detector's finds and misses.
+
 use super::*;
 use proptest::prelude::*;
 
@@ -17,7 +19,7 @@ fn rates(recall: u32, alarm: u32, blind: bool, runs: &[u32]) -> Rates {
 }
 
 #[test]
-fn what_is_missed_from_three_frames_is_absent_and_from_one_it_is_open() {
+fn judge_needs_misses_from_several_frames_for_an_absence() {
     let mostly_seen = rates(80, 5, false, &[0, 10, 40]);
     assert_eq!(judge(&mostly_seen, &[false; 6], 0.5), Judged::Absent);
     let seen_once = rates(80, 5, false, &[40]);
@@ -59,9 +61,9 @@ fn a_single_name_has_its_own_rates_where_enough_was_seen() {
 }
 
 proptest! {
-    /// One more find never makes a thing less probable, and whatever a file says, nothing is divided by zero.
+    /// One more find never makes a thing less probable, and no figures of a file lead to a division by zero.
     #[test]
-    fn finds_speak_for_a_thing(
+    fn more_finds_never_make_a_thing_less_probable(
         shown in 0u32..2000, found in 0u32..3000, absent in 0u32..2000, alarms in 0u32..3000,
         before in 0u32..200, again in 0u32..300, runs in prop::collection::vec(0u32..50, 0..12),
         frames in prop::collection::vec(any::<bool>(), 1..9), prior in 0.01..0.99,

@@ -1,4 +1,4 @@
-//! What is listed in a building, sorted by name.
+//! The inventory of a building: its listed objects, sorted by name, and its viewpoints with their rooms.
 
 use super::Beyond;
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,7 +8,7 @@ use wayword_language::lexicon::{Class, kinds, room_name, thing};
 /// An object belongs to the nearest viewpoint if that is no farther off, metres.
 const BESIDE_M: f64 = 4.0;
 
-/// What is listed in a building: made once from a survey, for all paths of the building.
+/// The listed objects and rooms of a building: made once from a survey, for all paths of the building.
 #[derive(Debug, Clone, Default)]
 pub struct Building {
     /// The names of objects.
@@ -39,7 +39,7 @@ pub(super) struct Name {
     pub(super) class: Class,
     /// The objects of that name.
     pub(super) spots: Vec<Spot>,
-    /// The rooms of the viewpoints beside them.
+    /// The rooms of the viewpoints next to them.
     pub(super) homes: BTreeSet<String>,
 }
 
@@ -90,7 +90,7 @@ impl Building {
         }
     }
 
-    /// What is known of the end of a path beyond what its frames show.
+    /// Rooms and things around the end of a path that its frames need not show.
     #[must_use]
     pub fn beyond(&self, path: &Path) -> Beyond {
         let last = path.frames.last().and_then(|frame| self.places.get(frame.viewpoint.as_ref()?));
@@ -118,8 +118,8 @@ impl Building {
     }
 }
 
-/// The kinds of thing that a label may mean, the most specific first. Annotators' compounds mean what their first words
-/// name, too, if that is of one class with the whole: a "sofa chair" may be a sofa.
+/// The kinds of thing that a label may mean, the most specific first. Annotators' compounds also mean their first
+/// words if these are of the same class: a "sofa chair" may be a sofa.
 fn meanings(name: &str) -> Vec<String> {
     let mut meant = kinds(name);
     let Some(whole) = thing(name) else { return meant };
@@ -133,7 +133,7 @@ fn meanings(name: &str) -> Vec<String> {
     meant
 }
 
-/// Where an object is: its own place, or else as far from the eye as its label says, or else at the eye.
+/// The position of an object: its own, or else as far from the eye as its label's distance, or else at the eye.
 fn position(viewpoint: &Surveyed, label: &Label) -> DVec3 {
     let ray = || {
         let flat_m = label.distance_m? * libm::cos(label.elevation_rad);
@@ -143,7 +143,7 @@ fn position(viewpoint: &Surveyed, label: &Label) -> DVec3 {
     label.position.or_else(ray).unwrap_or(viewpoint.position)
 }
 
-/// The viewpoint beside an object that no viewpoint shows.
+/// The viewpoint nearest to an object that no viewpoint shows.
 fn nearest(survey: &Survey, spot: DVec3) -> BTreeSet<usize> {
     let near = survey.viewpoints().iter().map(|viewpoint| viewpoint.position.distance(spot)).enumerate();
     let near = near.filter(|(_, distance_m)| *distance_m <= BESIDE_M).min_by(|a, b| a.1.total_cmp(&b.1));

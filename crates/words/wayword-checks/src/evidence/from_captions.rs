@@ -1,4 +1,4 @@
-//! Evidence from captions.
+//! Makes evidence from captions: which rooms and objects witnesses saw, guessed or denied from each frame.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
 use std::collections::BTreeSet;
@@ -28,15 +28,16 @@ impl Evidence {
         known.then(|| Self::of(path, frames, Source::Captions))
     }
 
-    /// Evidence from what a detector alone found and missed: captions without words, one observation per frame. `None`
-    /// where it looked for nothing.
+    /// Evidence from a detector's finds and misses alone: captions without words, one observation per frame. `None`
+    /// where it looked for no names.
     #[must_use]
     pub fn from_detector(path: &Path, observations: &[Observation]) -> Option<Self> {
         Some(Self { source: Source::Detector, ..Self::from_captions(path, observations)? })
     }
 }
 
-/// A name of which witnesses were unsure at least as often as they were sure is only perhaps there, wherever it was named.
+/// Moves doubtful things to the guesses: a name of which witnesses were unsure at least as often as they were sure is
+/// only perhaps there, in every frame.
 fn doubt(frames: &mut [FrameEvidence]) {
     let count = |of: fn(&FrameEvidence) -> &Vec<SeenThing>, frames: &[FrameEvidence], name: &str| {
         frames.iter().filter(|frame| of(frame).iter().any(|thing| normal(&thing.name) == name)).count()
@@ -56,7 +57,7 @@ fn doubt(frames: &mut [FrameEvidence]) {
 }
 
 fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
-    // A witness that names the room and no object has looked; one that says nothing may not have.
+    // A caption with a room and no object comes from a witness that looked; a caption without both may not.
     let has_looked = |look: &Look| look.caption.room.is_some() || !look.caption.sightings.is_empty();
     let knows_things = !looks.is_empty() && looks.iter().all(has_looked);
     let mut evidence = FrameEvidence { knows_things, ..FrameEvidence::default() };
@@ -73,14 +74,14 @@ fn of_looks(looks: &[Look], off_rad: &dyn Fn(&Look) -> f64) -> FrameEvidence {
             }
         }
     }
-    // What one view of a frame shows is there, whatever was said of another.
+    // A thing that one view of a frame shows is there, even if the caption of another view denies it.
     let FrameEvidence { things, perhaps, denied, .. } = &mut evidence;
     let is_named = |name: &str| things.iter().chain(&perhaps.things).any(|thing| agree(&thing.name, name));
     denied.retain(|name| !is_named(name));
     evidence
 }
 
-/// Whether a caption lists what its view shows: it is made of an answer of the form that was asked for.
+/// Whether a caption lists all that its view shows: it is made from an answer in the form that was asked for.
 fn is_list(look: &Look) -> bool {
     look.caption.is_structured && look.caption.form != Some(Form::Broken)
 }
@@ -160,7 +161,7 @@ mod tests {
             ("Walk past the table.", Verdict::Unverified),
             ("Walk past the clock.", Verdict::Unverified),
             ("Walk past the vase.", Verdict::Fail),
-            // Nobody overlooks one in lists of every frame.
+            // A list of every frame would hardly leave one out.
             ("Walk past the sofa.", Verdict::Fail),
             ("Walk past the beige rug.", Verdict::Pass),
             ("Walk past the black rug.", Verdict::Fail),
@@ -170,13 +171,13 @@ mod tests {
     }
 
     #[test]
-    fn who_wrote_from_captions_may_not_add_to_them() {
+    fn a_text_from_captions_may_not_add_to_them() {
         assert_eq!(places("Walk past the clock.", true), Verdict::Fail);
         assert_eq!(places("Walk past the lamp.", true), Verdict::Unverified);
     }
 
     #[test]
-    fn a_text_ends_where_what_it_stops_at_is_seen() {
+    fn a_text_ends_where_its_last_landmark_is_seen() {
         for (text, wanted) in [
             ("Stop next to the stove.", Verdict::Pass),
             ("Stop next to the plant.", Verdict::Pass),

@@ -1,4 +1,4 @@
-//! Evidence from the platform's own labels.
+//! Makes evidence from the platform's own labels.
 
 use super::{Evidence, FrameEvidence, SeenThing, Source};
 use wayword_core::{DVec3, Label, Path, View};

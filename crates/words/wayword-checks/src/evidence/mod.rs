@@ -1,4 +1,5 @@
-//! What a text about a path is checked against.
+//! The evidence that a text about a path is checked against: rooms, objects and storeys frame by frame, and the moves
+//! between frames.
 
 mod building;
 mod from_captions;
@@ -13,53 +14,54 @@ pub use surroundings::{Distance, NEAR_M, Surroundings};
 use wayword_core::{Climb, DVec3, Motion, Move, ObjectId, Path, motion};
 use wayword_language::lexicon::{Class, agree, is_fabric, room_name, same_room, thing};
 
-/// What is known of a path, frame by frame.
+/// Everything that is known of a path, frame by frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// One per frame of the path.
     pub frames: Vec<FrameEvidence>,
     /// The moves between them; none where the motion is unknown.
     pub moves: Vec<Move>,
-    /// Whether it is known how the walker moved. Where it is not, an empty list of moves says nothing.
+    /// Whether the walker's motion is known. If not, `moves` is empty although the path may move.
     pub motion: Motion,
-    /// Who vouches for it.
+    /// Its source.
     pub source: Source,
-    /// What is known of the end beyond what a frame shows.
+    /// Rooms and things around the end that no frame has to show.
     pub beyond: Beyond,
 }
 
-/// What is known of the end of a path beyond what its frames show: a text may tell the room by it.
+/// Rooms and things around the end of a path that its frames need not show. A text may use them to distinguish the
+/// room.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Beyond {
-    /// The names of the rooms beside the one at the end.
+    /// The names of the rooms next to the one at the end.
     pub rooms: Vec<String>,
-    /// The names of the things that stand in it.
+    /// The names of the things in it.
     pub things: Vec<String>,
 }
 
-/// What is known to be seen from one frame, all around.
+/// The rooms, objects and storey that are known for one frame, all around.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FrameEvidence {
     /// The room, or the rooms where witnesses differ; empty where it is not known.
     pub rooms: Vec<String>,
     /// Objects.
     pub things: Vec<SeenThing>,
-    /// Whether the objects are known. Where they are not, an empty list of objects says nothing.
+    /// Whether the objects are known. If not, an empty list of objects is no evidence of absence.
     pub knows_things: bool,
-    /// Whether the witness listed all that it noticed. Where it only described the view, its silence says little.
+    /// Whether the witness listed all that it noticed. If it only described the view, a missing object means little.
     pub lists_things: bool,
-    /// What the witnesses were not sure of.
+    /// Rooms and objects that the witnesses were not sure of.
     pub perhaps: Perhaps,
-    /// Names of objects that were said not to be there.
+    /// Names of objects that a witness declared absent.
     pub denied: Vec<String>,
     /// The storey, the lowest being 1.
     pub level: Option<u32>,
 }
 
-/// What witnesses were not sure of. It makes no text right, and none wrong.
+/// Guesses of witnesses. They make no text right, and none wrong.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Perhaps {
-    /// Rooms: what the room may be, and what is seen through openings.
+    /// Rooms: guesses of the frame's own room, and rooms that are seen through openings.
     pub rooms: Vec<String>,
     /// Objects.
     pub things: Vec<SeenThing>,
@@ -85,27 +87,27 @@ pub struct SeenThing {
 }
 
 impl FrameEvidence {
-    /// Whether its witness thought of seeing such a thing, without being sure.
+    /// Whether its witness may have seen a thing of that name, without being sure.
     pub(crate) fn may_show(&self, name: &str) -> bool {
         self.perhaps.things.iter().any(|thing| agree(&thing.name, name))
     }
 }
 
-/// Whether nobody overlooks a thing of that name.
+/// Whether a thing of that name is too conspicuous to be overlooked.
 fn stands_out(name: &str) -> bool {
     thing(name).is_some_and(|thing| thing.salience >= 3)
 }
 
-/// Who vouches for evidence.
+/// The source of evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// The platform's ground truth.
     Labels,
-    /// Captions of what was seen.
+    /// Captions of the views.
     Captions,
-    /// What a detector found and missed.
+    /// The finds and misses of a detector.
     Detector,
-    /// Nothing: only the path itself is known.
+    /// None: only the path itself is known.
     Nothing,
 }
 
@@ -121,7 +123,7 @@ impl Source {
         }
     }
 
-    /// Whether its witnesses leave out much of what is there.
+    /// Whether its witnesses leave out many of the things that are there.
     #[must_use]
     pub fn leaves_out(self) -> bool {
         matches!(self, Self::Captions | Self::Detector)
@@ -147,7 +149,7 @@ impl Evidence {
 
     /// For a thing that no frame shows: whether it is certainly nowhere along the path. That is so where the objects of
     /// every frame are known, and the witnesses could have named it. Captions leave things out, so there it must have
-    /// been denied, or be one that nobody overlooks in lists of what every frame shows.
+    /// be denied, or be too conspicuous to be missing in lists of every frame.
     #[must_use]
     pub fn denies_thing(&self, name: &str) -> bool {
         let overlooked = || !(stands_out(name) && self.frames.iter().all(|frame| frame.lists_things));
@@ -172,13 +174,13 @@ impl Evidence {
         !last.may_show(name) && (!self.source.leaves_out() || denied() || listed())
     }
 
-    /// Whether some witness thought of seeing such a thing, without being sure.
+    /// Whether some witness may have seen a thing of that name, without being sure.
     #[must_use]
     pub fn may_show(&self, name: &str) -> bool {
         self.frames.iter().any(|frame| frame.may_show(name))
     }
 
-    /// Whether some frame's witness said that there is no such thing.
+    /// Whether some frame's witness denied a thing of that name.
     fn is_denied(&self, name: &str) -> bool {
         self.frames.iter().flat_map(|frame| &frame.denied).any(|denied| denies(denied, name))
     }
@@ -210,13 +212,13 @@ impl Evidence {
         }
     }
 
-    /// The frames whose objects are not known.
+    /// The frames with unknown objects.
     #[must_use]
     pub fn frames_without_things(&self) -> Vec<usize> {
         self.frames_where(|frame| !frame.knows_things)
     }
 
-    /// The frames whose room is not known.
+    /// The frames with an unknown room.
     #[must_use]
     pub fn frames_without_room(&self) -> Vec<usize> {
         self.frames_where(|frame| frame.rooms.is_empty())

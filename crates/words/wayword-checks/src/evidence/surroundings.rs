@@ -1,4 +1,5 @@
-//! What is listed around a path, and how far off.
+//! Distances from a path to everything that its building lists. An open world uses them to judge how much a missing
+//! label means.
 
 use super::building::{Building, Name, Spot};
 use std::{
@@ -8,14 +9,14 @@ use std::{
 use wayword_core::{DVec3, Frame, Path};
 use wayword_language::lexicon::{Class, kinds, room_name, same_room};
 
-/// A thing this near to the path was there for whoever walked it, metres.
+/// A thing this near to the path can be seen by a person who walks it, metres.
 pub const NEAR_M: f64 = 3.0;
 /// Labels of objects on this storey differ from the eye's height by no more than this, metres.
 const STOREY_SLACK_M: f64 = 1.9;
 /// How much farther a metre of height is than a metre along the floor, beyond that.
 const HEIGHT_WEIGHT: f64 = 3.0;
 
-/// What is listed around a path.
+/// The listed objects and rooms around a path, with their distances.
 #[derive(Debug, Clone)]
 pub struct Surroundings {
     building: Arc<Building>,
@@ -44,9 +45,9 @@ pub struct Distance {
     pub path_m: f64,
     /// From its last frame, metres.
     pub end_m: f64,
-    /// Hops from the nearest viewpoint of the path to one beside it.
+    /// Hops from the nearest viewpoint of the path to a viewpoint next to it.
     pub path_hops: usize,
-    /// Hops from the last viewpoint of the path to one beside it.
+    /// Hops from the last viewpoint of the path to a viewpoint next to it.
     pub end_hops: usize,
 }
 
@@ -68,7 +69,8 @@ impl Distance {
 }
 
 impl Surroundings {
-    /// What a building lists around a path. `None` where the path's motion is unknown or the building lists nothing.
+    /// The listed objects and rooms around a path. `None` where the path's motion is unknown or the building lists
+    /// none.
     #[must_use]
     pub fn of(building: &Arc<Building>, path: &Path) -> Option<Self> {
         if !path.motion.is_known() || building.is_blank() || path.frames.is_empty() {
@@ -154,7 +156,7 @@ impl Surroundings {
         &self.floors_m
     }
 
-    /// Whether the path comes near a room of a kind that lists such a thing somewhere in this building.
+    /// Whether the path comes near a room of a kind that contains a thing of that name somewhere in this building.
     #[must_use]
     pub fn passes_home_of(&self, name: &str) -> bool {
         let wanted = kinds(name);
@@ -240,7 +242,8 @@ fn hops(building: &Building, starts: &[usize]) -> Vec<usize> {
     hops
 }
 
-/// How far a spot is from the path between these eyes. Height counts beyond what one storey explains.
+/// How far a spot is from the path between these eyes. Only height beyond that of one storey counts, and it counts
+/// more.
 fn distance(eyes: &[DVec3], spot: DVec3) -> Distance {
     let to_eye = |eye: &DVec3| off(spot - *eye);
     let to_hop = |hop: &[DVec3]| {

@@ -1,6 +1,5 @@
-//! What stays in mind of a walk: each thing once, the rooms in the order in which one passes them, the bends, the
-//! flights of stairs and the openings between rooms. It is made of the evidence and the path alone, for writers and
-//! checks alike.
+//! The memory of a walk: each thing once, the rooms in the order in which one passes them, the bends, the flights of
+//! stairs and the openings between rooms. It is made of the evidence and the path alone, for writers and checks alike.
 
 mod openings;
 #[cfg(test)]
@@ -22,7 +21,7 @@ use wayword_language::lexicon::agree;
 pub struct Memory {
     /// The things, in the order in which they are first seen.
     pub things: Vec<Remembered>,
-    /// The rooms, in order. Frames whose room is not known belong to none.
+    /// The rooms, in order. Frames without a known room belong to none.
     pub stays: Vec<Stay>,
     /// The turns, in order: several small turns to one side are one. None where the motion is unknown.
     pub bends: Vec<Bend>,
@@ -37,7 +36,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// The memory of a path, of which the evidence says what can be seen.
+    /// The memory of a path, made from its evidence.
     #[must_use]
     pub fn of(evidence: &Evidence, path: &Path) -> Self {
         let is_known = path.motion.is_known();

@@ -1,4 +1,4 @@
-//! Where a walk goes from one room to another.
+//! Finds the places where a walk goes from one room to another, and whether there is a door.
 
 use super::{Stay, ways};
 use crate::Evidence;
@@ -19,7 +19,7 @@ pub struct Opening {
     pub has_door: bool,
 }
 
-/// Rooms with a wall around them: whoever enters or leaves one goes through a door or doorway. Between the others a house may
+/// Rooms with a wall around them: one enters and leaves them through a door or doorway. Between the others a house may
 /// be open.
 const CLOSED: &[&str] = &[
     "bedroom",

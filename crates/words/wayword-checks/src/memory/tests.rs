@@ -1,3 +1,5 @@
+//! Tests of the memory of a walk: things, rooms, bends, flights and openings.
+
 use super::*;
 use crate::{Beyond, FrameEvidence, SeenThing, Source};
 use wayword_core::{Climb, Frame, Motion, ObjectId, Pose, SceneId};
@@ -183,7 +185,7 @@ fn flights_that_a_landing_joins_are_one() {
 }
 
 #[test]
-fn of_an_unknown_motion_only_the_order_stays() {
+fn memory_of_an_unknown_motion_has_only_the_order() {
     let frames = vec![frame("den", vec![thing("sofa", None, 20.0)]); 3];
     let path = Path {
         id: "p".into(),

@@ -1,4 +1,5 @@
-//! The things of a walk, each once.
+//! Collects the things of a walk, each once: sightings from several frames are joined if they can be of one thing, and
+//! the thing's position and the side on which one passes it follow from them.
 
 use crate::{Evidence, SeenThing};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_4};
@@ -66,8 +67,8 @@ impl Remembered {
 
 /// Sightings without ids that lie no farther apart are of one thing, metres.
 const SAME_M: f64 = 0.8;
-/// The same where distances are measured: to what is seen of a thing, which is its front from one side and its back from the
-/// other.
+/// The same for measured distances. They lead to the visible face of a thing, which is its front from one side and its
+/// back from the other.
 const SAME_FRONT_M: f64 = 1.5;
 /// Two directions cross where they differ by more than this, radians.
 const CROSSING_RAD: f64 = 0.17;
@@ -137,7 +138,7 @@ fn is_same(group: &[Sighted<'_>], new: &Sighted<'_>) -> bool {
     }
     match (last.eye.zip(last.towards), new.eye.zip(new.towards)) {
         (Some(a), Some(b)) => can_meet(a, b),
-        // Without directions, what frames in a row name is one thing.
+        // Without directions, a name in consecutive frames means one thing.
         _ => new.frame - last.frame <= 1,
     }
 }
@@ -183,7 +184,8 @@ fn joined(group: &[Sighted<'_>], eyes: &[DVec3]) -> Remembered {
     Remembered { name: first.name.clone(), object: first.object.clone(), colour, position, glimpses, passed }
 }
 
-/// Where a thing is: as its labels say, as far off as it is from the nearest frame, or where two of its directions cross.
+/// The position of a thing: that of its labels, or else by the distance from the nearest frame, or else where two of
+/// its directions cross.
 fn position(group: &[Sighted<'_>]) -> Option<DVec3> {
     let listed = group.iter().find_map(|sighted| sighted.thing.position);
     let rays: Vec<(DVec3, Heading)> = group.iter().filter_map(|sighted| sighted.eye.zip(sighted.towards)).collect();
@@ -200,11 +202,12 @@ fn nearest(group: &[Sighted<'_>]) -> Option<DVec3> {
     measured.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
 }
 
-/// A thing is passed where it lies beside a hop, and not before its beginning or after its end, metres of slack.
+/// A thing is passed where it lies at the side of a hop, and not before its beginning or after its end, metres of
+/// slack.
 const SLACK_M: f64 = 0.3;
-/// What is farther off the way than this is not passed, metres.
+/// A thing farther off the way than this is not passed, metres.
 const BESIDE_M: f64 = 4.0;
-/// What lies nearer to the line of the walk than this lies on neither side, metres.
+/// A thing nearer to the line of the walk than this lies on neither side, metres.
 const IN_THE_WAY_M: f64 = 0.15;
 
 fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<Passed> {
@@ -229,7 +232,7 @@ fn passed_at(position: DVec3, eyes: &[DVec3]) -> Option<Passed> {
     best.map(|(_, passed)| passed)
 }
 
-/// Without a place: one passes what was ahead and is then beside one.
+/// For a thing without a position: one passes it if it is ahead first and then at one's side.
 fn passed_by_glimpses(glimpses: &[Glimpse]) -> Option<Passed> {
     glimpses.windows(2).find_map(|pair| {
         let (before, now) = (pair[0].turn_rad?, pair[1].turn_rad?);

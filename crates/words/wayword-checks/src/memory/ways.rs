@@ -1,4 +1,4 @@
-//! The rooms, bends and flights of a walk.
+//! Finds the rooms, bends and flights of stairs of a walk.
 
 use crate::Evidence;
 use std::{cmp::Ordering, ops::Range};
@@ -72,9 +72,9 @@ pub(super) fn stays(evidence: &Evidence) -> Vec<Stay> {
     stays
 }
 
-/// Two turns to different sides are a way that winds where both are smaller than this, degrees,
+/// Two opposite turns are taken for a winding way, and not for turns, if each is smaller than this, degrees,
 const WINDING_EACH_DEG: f64 = 40.0;
-/// what is left of them is smaller than this, degrees,
+/// and they add up to less than this, degrees,
 const WINDING_DEG: f64 = motion::SLIGHT_DEG;
 /// and the way between them is shorter than this, metres.
 const WINDING_M: f64 = 2.5;
@@ -106,14 +106,14 @@ fn run_of_turns(moves: &[Move], first: usize) -> usize {
     if turns { 1 + same.count() } else { 1 }
 }
 
-/// The bends of moves that turn to one side, in order: where some of them are one bend, the longest such part comes first, then
-/// the one that turns farthest.
+/// The bends of moves that turn to one side, in order: where some of them are one bend, the longest part of that kind
+/// comes first, then the one that turns farthest.
 fn joined(moves: &[Move], run: Range<usize>, bends: &mut Vec<Bend>) {
     let total = |part: &Range<usize>| part.clone().map(|at| turn_deg(moves, at)).sum::<f64>().abs();
     let parts =
         run.clone().flat_map(|first| (first + 2..=run.end.min(first + motion::BEND_MOVES)).map(move |end| first..end));
     let fits = |part: &Range<usize>| (motion::BEND_DEG..=ONE_BEND_DEG).contains(&total(part));
-    // A turn that is one by itself and is followed by another such is not joined with it.
+    // A full turn that is followed by another full turn is not joined with it.
     let is_full = |at: &usize| turn_deg(moves, *at).abs() >= motion::FULL_DEG;
     let joins = |part: &Range<usize>| part.clone().filter(is_full).count() <= 1;
     let far = |part: &Range<usize>| (part.len(), total(part));
@@ -131,8 +131,8 @@ fn joined(moves: &[Move], run: Range<usize>, bends: &mut Vec<Bend>) {
     joined(moves, part.end..run.end, bends);
 }
 
-/// The bends without those that the next one takes back at once: a way that winds. The nearest two go first. It goes by the turns
-/// alone, because one who stands in a door is in the room ahead, which is another one on the way back.
+/// The bends without pairs that cancel each other at once, as on a winding way. The nearest two go first. Only the
+/// turns count, because a walker in a door is in the room ahead, which is another one on the way back.
 fn unwound(mut bends: Vec<Bend>, moves: &[Move]) -> Vec<Bend> {
     let between_m = |pair: &[Bend]| moves[pair[0].last..pair[1].first].iter().map(|step| step.distance_m).sum::<f64>();
     let takes_back = |pair: &[Bend]| {

@@ -1,15 +1,16 @@
-//! What a dataset that the user has says of single names of objects and rooms.
+//! Corrections to the weights for single names of objects and rooms, fitted on the user's own dataset. People name
+//! some things more reliably than their class, and some less.
 
 use super::{claims::Claim, sight::Missed, weights::Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_language::lexicon::{kinds, room_name};
 
-/// What is added to the logarithm of a likelihood ratio, by the name of what is claimed.
+/// An offset to the logarithm of a likelihood ratio, by the name of the claimed place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// The platform whose labels it is about.
+    /// The platform with the labels that it was made with.
     pub platform: String,
     /// The file that it was made from.
     pub from: String,
@@ -19,7 +20,7 @@ pub struct Calibration {
     pub names: BTreeMap<String, Offsets>,
 }
 
-/// What is added for one name, by how far the nearest one is that is listed.
+/// The offsets of one name, by how far away the nearest listed one is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Offsets {
@@ -34,9 +35,9 @@ pub struct Offsets {
 /// A claim that is not listed within reach, for a calibration.
 #[derive(Debug, Clone)]
 pub struct Observed<'a> {
-    /// What is claimed.
+    /// The claim.
     pub claim: &'a Claim,
-    /// What the evidence says.
+    /// Its features in the evidence.
     pub missed: &'a Missed,
     /// Whether the claim is wrong.
     pub wrong: bool,
@@ -47,7 +48,7 @@ pub struct Observed<'a> {
 /// The logarithm of a claim's ratio by the general weights, whether it is wrong, and how much it counts.
 type Weighed = (f64, bool, f64);
 
-/// Most that a name may add or take away: a factor of 20. It also bounds what a file can do.
+/// The largest offset: a factor of 20. It also bounds the effect of an untrusted file.
 const MOST: f64 = 3.0;
 /// As how many claims the general weights count against a name's own. It keeps rare names close to them.
 const RIDGE: f64 = 4.0;
@@ -59,7 +60,7 @@ impl Calibration {
     /// Checks a calibration that comes from a file.
     ///
     /// # Errors
-    /// When it holds a number that is not finite; the text says of which name.
+    /// When it holds a number that is not finite; the text names the entry.
     pub fn check(&self) -> Result<(), String> {
         let is_finite =
             |offsets: &Offsets| [offsets.close, offsets.far, offsets.nowhere].iter().all(|it| it.is_finite());
@@ -69,14 +70,14 @@ impl Calibration {
         }
     }
 
-    /// What it adds to the logarithm of a claim's likelihood ratio.
+    /// The offset to the logarithm of a claim's likelihood ratio.
     #[must_use]
     pub fn offset(&self, claim: &Claim, missed: &Missed) -> f64 {
         let offsets = self.names.get(&name(claim));
         offsets.map_or(0.0, |offsets| offsets.of(missed)).clamp(-MOST, MOST)
     }
 
-    /// Whether labels leave it open that there is a thing of this name where they list none nearby: people are often right
+    /// Whether a missing label leaves it open that a thing of this name is nearby, because people are often right
     /// about it there. `None` where the calibration knows the name too little.
     #[must_use]
     pub fn leaves_open(&self, name: &str) -> Option<bool> {
@@ -84,7 +85,7 @@ impl Calibration {
         (close.abs() >= TELLING).then_some(close < 0.0)
     }
 
-    /// Fits what single names add to the general weights. Each name stands for itself.
+    /// Fits the offsets of single names to the general weights. Each name is fitted by itself.
     #[must_use]
     pub fn fit(platform: &str, from: &str, texts: usize, observed: &[Observed<'_>]) -> Self {
         let weights = Weights::shipped();
@@ -133,7 +134,7 @@ fn name(claim: &Claim) -> String {
     }
 }
 
-/// The offset at which the observed claims are likeliest, by Newton's way.
+/// The offset at which the observed claims are likeliest, by Newton's method.
 fn fitted(observed: &[Weighed]) -> f64 {
     let mut offset = 0.0;
     for _ in 0..STEPS {

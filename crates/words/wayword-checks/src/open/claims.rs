@@ -1,4 +1,4 @@
-//! The places that a text claims.
+//! Lists the places that a text claims, each with the walker's relation to it.
 
 use super::relation::{Relation, relations};
 use wayword_language::{
@@ -21,7 +21,7 @@ pub struct Claim {
     pub is_thing: bool,
     /// The class of the object that it can be.
     pub class: Class,
-    /// What the walker does about it.
+    /// The walker's relation to it.
     pub relation: Relation,
 }
 
@@ -32,7 +32,7 @@ impl Claim {
         reading.events[self.event].clause
     }
 
-    /// Whether it claims a room and nothing else.
+    /// Whether the name can only be a room's.
     #[must_use]
     pub fn is_only_room(&self) -> bool {
         self.is_room && !self.is_thing

@@ -1,4 +1,4 @@
-//! Stairs and storeys in an open world: they are held against floor heights along the path.
+//! Checks stairs and storeys in an open world, by the floor heights along the path.
 
 use super::phrase::phrase;
 use crate::{Subject, finding, floors};
@@ -15,12 +15,13 @@ use wayword_language::{
 const STEP_M: f64 = 0.1;
 /// A path that goes this far the other way takes stairs there, metres.
 const FLIGHT_M: f64 = 0.5;
-/// Beside such stairs, what it gains is no climb if it is less than this share of them, in a text that tells both ways.
+/// Next to stairs the other way, a gain is no climb if it is less than this share of them, in a text with climbs both
+/// ways.
 const SHARE_OF_BOTH: f64 = 0.15;
-/// The same in a text that only tells this way.
+/// The same in a text with climbs this way only.
 const SHARE_OF_ONE: f64 = 0.45;
 
-/// What is wrong with the climbs and storeys of a text.
+/// The mistakes in the climbs and storeys of a text.
 pub(super) fn climbs(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let tokens = tokens(text);
     let heights = Heights::of(subject, if tells_both_ways(reading) { SHARE_OF_BOTH } else { SHARE_OF_ONE });
@@ -46,7 +47,7 @@ pub(super) fn climbs(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec
         };
         found.push(finding(Check::Floors, verdict, reason, Some(phrase(&tokens, event.span, is_stairs))));
     }
-    // People count storeys from the street or from the cellar, so a number alone refutes nothing.
+    // People count storeys from the street or from the cellar, so a number alone contradicts no path.
     let numbers = floors::wrong_floors(reading, subject.evidence).map(|finding| Finding {
         verdict: Verdict::Unverified,
         reason: "the program does not know from where the text counts storeys".into(),
@@ -56,7 +57,7 @@ pub(super) fn climbs(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec
     found
 }
 
-/// How a text tells of a climb.
+/// The wording of a climb.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Told {
     /// As a command.
@@ -64,7 +65,8 @@ enum Told {
     /// As a moment, before which the path may end or after which it may begin: "once you are up the stairs", "begin to
     /// climb the stairs". Also without stairs, where "down" may be along a hallway: "walk all the way down".
     Moment,
-    /// As what stairs do, or what the walker does not do any more: "the stairs going down", "stop before you go up".
+    /// As a description of stairs, or of something that the walker no longer does: "the stairs going down", "stop
+    /// before you go up".
     Described,
 }
 
@@ -82,7 +84,7 @@ fn told(tokens: &[Token], span: [usize; 2]) -> Told {
     }
 }
 
-/// Whether a text tells of going up and of going down.
+/// Whether a text has a climb up and a climb down.
 fn tells_both_ways(reading: &Reading) -> bool {
     let tells = |way: Climb| {
         reading.events.iter().any(|event| match event.what {
@@ -97,7 +99,7 @@ fn is_stairs(word: &str) -> bool {
     word.ends_with("stairs") || word.starts_with("stair") || word.starts_with("step") || word.starts_with("flight")
 }
 
-/// Whether stairs or storeys are named beside a climb.
+/// Whether stairs or storeys are named near a climb.
 fn names_stairs(tokens: &[Token], at: usize) -> bool {
     let near = tokens.iter().take(at + 8).skip(at.saturating_sub(5));
     let is_storey =
@@ -109,10 +111,10 @@ fn names_stairs(tokens: &[Token], at: usize) -> bool {
 /// How a path goes up and down.
 struct Heights {
     is_known: bool,
-    /// What it gains and loses, metres: the most height between any two of its frames.
+    /// The heights that it gains and loses, metres: the most between any two of its frames.
     up_m: f64,
     down_m: f64,
-    /// Beside stairs the other way, what it gains is no climb if it is less than this share of them.
+    /// Next to stairs the other way, a gain is no climb if it is less than this share of them.
     share: f64,
 }
 
@@ -120,7 +122,7 @@ impl Heights {
     fn of(subject: Subject<'_>, share: f64) -> Self {
         let moves = &subject.evidence.moves;
         let eyes: Vec<f64> = moves.iter().map(|step| step.rise_m).collect();
-        // A camera may stand lower over a step than elsewhere over the floor, and be moved up and down on one floor.
+        // A camera may be lower over a step than elsewhere over the floor, and be moved up and down on one floor.
         let floors_m = subject.reach.surroundings.map_or(&[][..], |around| around.floors_m());
         let floors: Vec<f64> = floors_m.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let rises = if floors.len() == eyes.len() { floors } else { eyes };

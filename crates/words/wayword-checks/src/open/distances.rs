@@ -1,15 +1,14 @@
-//! Told distances, held against the path's length.
+//! Checks the distances of a text by the path's length.
 
 use crate::{evidence::Evidence, finding};
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::reading::{Reading, What};
 
-/// People guess distances badly: a told one may be longer than the whole path by this factor, and by this many metres
-/// besides.
+/// People guess distances badly: one may be longer than the whole path by this factor, and by this many metres more.
 const FACTOR: f64 = 1.5;
 const SLACK_M: f64 = 3.0;
 
-/// The told distances that are longer than the whole path. A shorter one may be any stretch of it.
+/// The distances of a text that are longer than the whole path. A shorter one may be any stretch of it.
 pub(super) fn distances(reading: &Reading, evidence: &Evidence) -> Vec<Finding> {
     let length_m: f64 = evidence.moves.iter().map(|step| step.distance_m).sum();
     let told = reading.events.iter().filter_map(|event| match event.what {

@@ -1,4 +1,4 @@
-//! What a room has although labels do not list it.
+//! Things that a room has although labels do not list them.
 
 use super::weights::Weights;
 use wayword_language::lexicon::{normal, room_name, thing};
@@ -6,9 +6,9 @@ use wayword_language::lexicon::{normal, room_name, thing};
 /// The salience of things that are seen from across a room.
 const SEEN_FROM_AFAR: u8 = 3;
 
-/// Whether labels that list no such thing leave it open in a room: it is seen from afar, where labels do not reach, and
-/// such a room has it. Rooms are known by the classes of things that they list, or share a word with the thing: a dining
-/// room has a dining table.
+/// Whether a missing label leaves it open that a room has a thing: it can be seen from afar, where labels do not
+/// reach, and rooms of this kind have it. Rooms are known by the classes of things that they list, or share a word
+/// with the thing: a dining room has a dining table.
 #[must_use]
 pub fn is_expected(name: &str, room: &str) -> bool {
     let Some(thing) = thing(name).filter(|thing| thing.salience >= SEEN_FROM_AFAR) else { return false };
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_room_has_what_it_is_for() {
+    fn is_expected_knows_the_things_that_make_a_room() {
         assert!(is_expected("dining table", "dining room"));
         assert!(is_expected("bed", "bedroom") && is_expected("bathtub", "bathroom"));
         assert!(!is_expected("dining table", "bathroom") && !is_expected("bathtub", "office"));

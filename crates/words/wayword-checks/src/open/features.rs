@@ -1,4 +1,4 @@
-//! What the evidence shows about a claimed place, as numbers that weights are fitted to.
+//! Turns the evidence about a claimed place into features, the numbers that weights are fitted to.
 
 use super::{
     claims::Claim,
@@ -9,7 +9,7 @@ use super::{
 use crate::evidence::{Distance, Evidence, NEAR_M, Surroundings};
 use wayword_language::lexicon::{Class, room_name, thing};
 
-/// What the evidence says about a claimed place.
+/// Whether the evidence shows a claimed place, lacks it, or cannot decide.
 #[must_use]
 pub fn sight(claim: &Claim, evidence: &Evidence, around: Option<&Surroundings>, weights: &Weights) -> Sight {
     let at_stop = claim.relation == Relation::Stop;
@@ -33,7 +33,7 @@ pub fn sight(claim: &Claim, evidence: &Evidence, around: Option<&Surroundings>, 
     }
 }
 
-/// Walls, floors and corners are everywhere: naming them claims nothing.
+/// Walls, floors and corners are everywhere: naming them is no claim.
 fn is_everywhere(claim: &Claim) -> bool {
     matches!(thing(&claim.name).map(|thing| thing.name), Some("wall" | "floor" | "ceiling" | "corner"))
 }

@@ -1,8 +1,8 @@
-//! The checks of a text that somebody else wrote: an absence counts only if the evidence would have shown the thing.
+//! Checks texts of other authors: an absence counts only if the evidence would have shown the thing.
 //!
-//! A claim fails where the evidence is many times likelier if the claim is wrong than if it is true. The weights that
-//! say how much likelier were fitted on texts of people, by class of object and group of rooms
-//! ([`Weights`]); they hold no text and no rate by the name of an object or a building.
+//! A claim fails where the evidence is many times likelier if the claim is wrong than if it is true. The weights for
+//! that likelihood were fitted on texts of people, by class of object and group of rooms ([`Weights`]); they hold no
+//! text and no rate by the name of an object or a building.
 
 mod calibration;
 mod claims;
@@ -35,8 +35,8 @@ pub use relation::Relation;
 pub use sight::{Case, Missed, Sight, class_name};
 pub use weights::{Table, Weights};
 
-/// What is wrong with the places, the order, the turns and the storeys of somebody else's text. `whole` is the reading
-/// with what the text denies, and `reading` the one without.
+/// The mistakes in the places, the order, the turns and the storeys of another author's text. `whole` is the reading
+/// with its denied events, and `reading` the one without.
 pub(super) fn open(text: &str, whole: &Reading, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let mut findings = places::places(reading, subject);
     findings.extend(climbs::climbs(text, reading, subject));
@@ -52,7 +52,7 @@ pub(super) fn open(text: &str, whole: &Reading, reading: &Reading, subject: Subj
     findings
 }
 
-/// Turns are judged where whole walks are compared, and not here. Where nobody does that, each is unverified.
+/// Turns are judged where whole walks are compared, and not here. If no walks are compared, each turn is unverified.
 fn turns(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let reason = match subject.turns {
         _ if !subject.evidence.motion.is_known() => "the program cannot check how the path turns".to_owned(),

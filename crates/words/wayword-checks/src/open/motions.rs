@@ -1,4 +1,5 @@
-//! The motions by places that a text tells: which of them it tells a second time, and which do not agree with its stop.
+//! Finds motions by places ("walk past the sofa") that a text repeats although the path has one of them, and those
+//! that contradict its stop.
 
 use super::{
     claims::{Claim, claims},
@@ -13,7 +14,7 @@ use wayword_language::{
     text::Token,
 };
 
-/// How far before a place the words may stand that say which one it is.
+/// How far before a place the words may be that identify it.
 const WORDS_BEFORE: usize = 3;
 
 /// A motion by a place: it goes into it, out of it, through it or past it.
@@ -22,7 +23,7 @@ struct Motion<'a> {
     at: usize,
     relation: Relation,
     name: String,
-    /// The words that say which one it is: those right before the place, and those of its name.
+    /// The words that identify it: those right before the place, and those of its name.
     which: Vec<&'a str>,
     /// Where it goes over stairs, which way.
     climb: Option<Climb>,
@@ -33,7 +34,7 @@ struct Motion<'a> {
     span: [usize; 2],
 }
 
-/// The byte ranges of motions that are told a second time, where the path has one stretch of them.
+/// The byte ranges of repeated motions, where the path has one stretch of them.
 pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> Vec<[usize; 2]> {
     let claims = claims(reading);
     let motions = motions(tokens, reading, &claims);
@@ -52,7 +53,7 @@ pub(super) fn told_twice(tokens: &[Token], reading: &Reading, stretches: &Stretc
             || takes_up(tokens, &claims[motion.at])
             || is_restated(reading, &motions[before], motion)
             || leaves_between(&motions[before..=at]);
-        // A thing of which the labels list none is passed no more than once, either.
+        // A thing that the labels do not list is passed no more than once, either.
         let passes_thing =
             motion.relation == Relation::Past && !motion.is_room && claims[motion.at].class != Class::Fabric;
         let is_once = match stretches.places(&claims[motion.at]) {
@@ -91,7 +92,7 @@ pub(super) fn past_the_stop(tokens: &[Token], reading: &Reading) -> Option<[usiz
     is_wrong.then(|| phrase(tokens, way.span, |_| false))
 }
 
-/// Whether the text says which one of several a place is, or that it is several.
+/// Whether the text identifies a place among several, or names several of them.
 fn tells_which(place: &Place) -> bool {
     place.ordinal.is_some() || place.several || place.side.is_some()
 }
@@ -152,7 +153,7 @@ fn name(claim: &Claim) -> String {
     }
 }
 
-/// The words that say which place is meant: those before it, back to its article, and those of its name.
+/// The words that identify a place: those before it, back to its article, and those of its name.
 fn which<'a>(tokens: &'a [Token], claim: &Claim) -> Vec<&'a str> {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let end = tokens.partition_point(|token| token.span[1] <= claim.span[1]);
@@ -161,7 +162,7 @@ fn which<'a>(tokens: &'a [Token], claim: &Claim) -> Vec<&'a str> {
     before().take(article).chain(&tokens[at..end]).map(|token| token.word.as_str()).collect()
 }
 
-/// Whether a word says how a motion goes by a place.
+/// Whether a word expresses how a motion goes by a place.
 fn is_way(word: &str) -> bool {
     matches!(word, "past" | "pass" | "passed" | "passing" | "by" | "through" | "down" | "up" | "into" | "out")
 }
@@ -170,8 +171,8 @@ fn is_article(word: &str) -> bool {
     matches!(word, "the" | "a" | "an" | "your")
 }
 
-/// Whether the words before a place only say where something is: "the door just past the sofa", "the hallway that is
-/// past the stairs", "halfway down the stairs".
+/// Whether the words before a place only locate something: "the door just past the sofa", "the hallway that is past
+/// the stairs", "halfway down the stairs".
 fn says_where(tokens: &[Token], claim: &Claim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let word = |at: usize| tokens.get(at).map_or("", |token| token.word.as_str());
@@ -200,7 +201,7 @@ fn stops_before(reading: &Reading, claim: &Claim) -> bool {
     reading.events[..claim.event].iter().any(|event| event.what == What::Stop && event.clause == clause)
 }
 
-/// Whether a motion into, out of or along a place is told again at once, in other words: "exit the room and turn right
+/// Whether a motion into, out of or along a place is repeated at once, in other words: "exit the room and turn right
 /// out of the room", "down the hallway. Go down the hallway until ...".
 fn is_restated(reading: &Reading, before: &Motion<'_>, again: &Motion<'_>) -> bool {
     let is_between = |clause: usize| before.clause < clause && clause < again.clause;
@@ -226,7 +227,7 @@ fn leaves_between(motions: &[Motion<'_>]) -> bool {
     last.is_room && between.iter().any(|motion| motion.relation != Relation::Past && elsewhere(motion))
 }
 
-/// Whether the sentence before a place takes up what was said: "once past the sofa", "another door".
+/// Whether the sentence before a place refers back: "once past the sofa", "another door".
 fn takes_up(tokens: &[Token], claim: &Claim) -> bool {
     let at = tokens.partition_point(|token| token.span[0] < claim.span[0]);
     let clause = tokens[..at].iter().rev().take_while(|token| token.is_word()).take(9);

@@ -1,14 +1,14 @@
-//! The words of a motion: its verb, and what it goes along or past.
+//! Finds the words of a motion: its verb, and the place that it goes along or past.
 
 use wayword_language::{reading::motion_words::MOTION_VERBS, text::Token};
 
-/// How far before what is moved by its verb may stand, words.
+/// How far before the place of a motion its verb may be, words.
 const BACK: usize = 5;
-/// How far behind a verb its noun may stand, words.
+/// How far behind a verb its noun may be, words.
 const AHEAD: usize = 5;
 
-/// The byte range from a motion's verb to the end of what is named, or to its noun behind: "walk past the sofa", "walk up
-/// the stairs". `noun` says which words are that noun.
+/// The byte range from a motion's verb to the end of the place's name, or to its noun behind: "walk past the sofa",
+/// "walk up the stairs". `noun` decides which words are that noun.
 pub(super) fn phrase(tokens: &[Token], span: [usize; 2], noun: impl Fn(&str) -> bool) -> [usize; 2] {
     let first = tokens.partition_point(|token| token.span[0] < span[0]);
     let goes_on = |token: &&Token| token.is_word() && !matches!(token.word.as_str(), "and" | "then" | "or" | "until");

@@ -1,4 +1,4 @@
-//! Rooms and objects in an open world.
+//! Checks rooms and objects in an open world.
 
 use super::{
     Calibration,
@@ -13,7 +13,7 @@ use crate::{Subject, evidence::Source, finding, landmarks::is_beyond};
 use wayword_core::{Check, Finding, Verdict};
 use wayword_language::reading::{Reading, What};
 
-/// What is wrong with the places of a text, and which of them cannot be checked.
+/// The places of a text that are wrong, and those that cannot be checked.
 pub(super) fn places(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let evidence = subject.evidence;
     let weights = Weights::shipped();
@@ -33,7 +33,7 @@ pub(super) fn places(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
             Sight::Unknown => {
                 Some((Verdict::Unverified, format!("the program cannot check whether there is {:?}", claim.name)))
             }
-            // It is in the room at the end, or is the room beside it, and no frame has to show it.
+            // It is in the room at the end, or is the room next to it, and no frame has to show it.
             Sight::Missed(_) if is_beyond(place, evidence) => None,
             Sight::Missed(missed) => Some(missing(&claim, missed, weights, subject.reach.calibration)),
         };
@@ -46,7 +46,7 @@ pub(super) fn places(reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     findings
 }
 
-/// What the evidence says about each claim, in view of the others.
+/// The sight of each claim, in view of the others.
 fn sights(claims: &[Claim], subject: Subject<'_>, weights: &Weights) -> Vec<Sight> {
     let alone = |claim| sight(claim, subject.evidence, subject.reach.surroundings, weights);
     let sights: Vec<Sight> = claims.iter().map(alone).collect();
@@ -76,7 +76,7 @@ fn missing(claim: &Claim, missed: &Missed, weights: &Weights, calibration: Optio
     }
 }
 
-/// What cannot be said of a colour: the labels of a place need not be those of the thing that the text means.
+/// The doubt about a colour: the labels of a place need not be those of the thing that the text means.
 fn colour(told: Option<&str>, claim: &Claim, subject: Subject<'_>) -> Option<(Verdict, String)> {
     let told = told?;
     let things = subject.evidence.frames.iter().flat_map(|frame| &frame.things);

@@ -1,11 +1,11 @@
-//! What the walker does about a place.
+//! Decides how the walker moves relative to a place that a text claims: into it, past it, or not at all.
 
 use wayword_language::{
     lexicon::room_name,
     reading::{Going, Link, Reading, What},
 };
 
-/// What the walker does about a place.
+/// How the walker moves relative to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Relation {
     /// Goes into it.
@@ -20,7 +20,7 @@ pub enum Relation {
     Towards,
     /// Goes past it.
     Past,
-    /// Something else is beside it, or it is only named.
+    /// Something else is next to it, or it is only named.
     Beside,
 }
 
@@ -70,8 +70,8 @@ pub(super) fn relations(reading: &Reading) -> Vec<Option<Relation>> {
             Some(Going::Past) => Relation::Past,
             Some(Going::Towards | Going::Until) if stops && !named => Relation::Stop,
             Some(Going::Towards | Going::Until) => Relation::Towards,
-            // "Stop by the sofa next to the window": the window only says which sofa. Stairs are long: what is next to them
-            // is where the walk stops.
+            // "Stop by the sofa next to the window": the window only identifies the sofa. Stairs are long, so the walk
+            // stops at a thing next to them.
             None if stops && at_stairs && place.link == Link::Beside => Relation::Stop,
             None if stops && !(named && place.link == Link::Beside) => Relation::Stop,
             None => Relation::Beside,

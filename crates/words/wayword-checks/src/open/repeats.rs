@@ -1,4 +1,5 @@
-//! What a text says twice, where the path has no two stretches of it.
+//! Finds statements that a text repeats although the path has too few stretches of them. Language models repeat
+//! themselves so.
 
 use super::{claims::claims, motions, relation::Relation, stretches::Stretches};
 use crate::{Subject, finding};
@@ -9,10 +10,10 @@ use wayword_language::{
     text::{Token, tokens},
 };
 
-/// A sentence of this many words is not said twice of two stretches, however many there are.
+/// A sentence of this many words is never repeated for another stretch, however many there are.
 const MANY_WORDS: usize = 8;
 
-/// What is said twice: whole sentences, and the same motion by the same place.
+/// The repetitions of a text: whole sentences, and the same motion by the same place.
 pub(super) fn repeats(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     if !subject.evidence.motion.is_known() {
         return Vec::new();
@@ -32,7 +33,7 @@ pub(super) fn repeats(text: &str, reading: &Reading, subject: Subject<'_>) -> Ve
     found
 }
 
-/// Sentences that are said twice in the same words.
+/// Sentences that occur twice in the same words.
 fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> Vec<Finding> {
     let mut said: BTreeMap<Vec<&str>, usize> = BTreeMap::new();
     let mut before: Vec<&str> = Vec::new();
@@ -50,7 +51,7 @@ fn sentences(tokens: &[Token], reading: &Reading, stretches: &Stretches<'_>) -> 
         if *times == 1 {
             continue;
         }
-        // "Turn left. Walk on. Turn left. Walk on.": such sentences may well be said twice.
+        // "Turn left. Walk on. Turn left. Walk on.": sentences as short as these may well be repeated.
         let told = |what: &What| match what {
             What::Turn(side) => Some(stretches.turns(*side)),
             What::Climb(climb) | What::Steps(climb) => Some(stretches.climbs(*climb)),

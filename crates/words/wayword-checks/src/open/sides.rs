@@ -1,24 +1,24 @@
-//! "On your left" in an open world: it is held against every such thing that is listed near the path.
+//! Checks "on your left" in an open world, by every thing of that name that is listed near the path.
 //!
 //! Of people's true claims, one in three hundred has every listed thing on the other side; of flipped ones, one in a
-//! hundred. That is far from enough to say that a side is wrong, so it is unverified.
+//! hundred. That is far from enough to call a side wrong, so it is unverified.
 
 use crate::{Subject, evidence::Surroundings, sides};
 use std::f64::consts::{PI, TAU};
 use wayword_core::{DVec3, Side, Verdict};
 use wayword_language::reading::Place;
 
-/// A thing that is told to be on a side is no farther than this from the path, metres.
+/// A thing with a side is no farther than this from the path, metres.
 const REACH_M: f64 = 6.0;
-/// Such a thing is seen from a point of the path that is no farther off than this, metres.
+/// It is seen from a point of the path that is no farther off than this, metres.
 const SIGHT_M: f64 = 9.0;
 /// Points of a hop from which the sides are seen.
 const POINTS: usize = 5;
-/// A direction on the other side counts as such from here on, degrees.
+/// A direction counts as on the other side from here on, degrees.
 const CLEARLY_DEG: f64 = 20.0;
 
-/// What cannot be said of the side of a place: where every such thing near the path is clearly on the other side all
-/// along the path, or the motion is unknown.
+/// The doubt about the side of a place: every thing of its name near the path is clearly on the other side all along
+/// the path, or the motion is unknown.
 pub(super) fn unclear_side(place: &Place, subject: Subject<'_>) -> Option<(Verdict, String)> {
     let side = place.side?;
     let name = &place.name;
@@ -38,7 +38,7 @@ pub(super) fn unclear_side(place: &Place, subject: Subject<'_>) -> Option<(Verdi
     all_wrong.then(|| (Verdict::Unverified, reason()))
 }
 
-/// The directions of all such things from points along the path, degrees from the way ahead, positive right.
+/// The directions of all things of that name from points along the path, degrees from the way ahead, positive right.
 fn turns(name: &str, is_room: bool, around: &Surroundings) -> Vec<f64> {
     let mut spots = around.spots(name, REACH_M);
     if is_room {

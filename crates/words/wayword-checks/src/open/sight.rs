@@ -1,22 +1,22 @@
-//! What the evidence says about a claimed place.
+//! Whether the evidence shows a claimed place, and if not, the features by which its absence is weighed.
 
 use wayword_language::lexicon::Class;
 
-/// What the evidence says about a claimed place.
+/// The state of a claimed place in the evidence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sight {
     /// It is there.
     Shown,
-    /// Nothing can be said.
+    /// The evidence cannot decide.
     Unknown,
-    /// It is not listed within reach. How much that says is weighed.
+    /// It is not listed within reach. The weights decide how much that means.
     Missed(Missed),
 }
 
 /// A claimed place that is not listed within reach.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Missed {
-    /// Which table of weights it is held against.
+    /// Which table of weights applies to it.
     pub case: Case,
     /// Features by name.
     pub features: Vec<(String, f64)>,
@@ -66,7 +66,7 @@ impl Missed {
         self.case != Case::Thing || self.nearest_m >= SEEN_M
     }
 
-    /// Adds what the evidence says of the other places that the text claims: where the labels have those, they are
+    /// Adds how the evidence treats the other places that the text claims: where the labels have those, they are
     /// good enough to miss this one too.
     pub fn keep_company<'a>(&mut self, others: impl Iterator<Item = &'a Sight>) {
         let (mut shown, mut missed) = (0.0, 0.0);

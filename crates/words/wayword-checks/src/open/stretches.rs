@@ -1,18 +1,18 @@
-//! How many stretches of a path there are of what a text says.
+//! Counts how many stretches of a path fit a statement of a text, for the check of repetitions.
 
 use super::claims::Claim;
 use crate::{Subject, evidence::NEAR_M};
 use wayword_core::{Climb, Side};
 use wayword_language::lexicon::{Class, room_name, same_room, thing};
 
-/// A move that turns by this much may be told as a turn, degrees.
+/// A move that turns by this much may be called a turn, degrees.
 const TURN_DEG: f64 = 20.0;
-/// A hallway that turns by this much may be told as two, degrees.
+/// A hallway that turns by this much may be called two, degrees.
 const CORNER_DEG: f64 = 30.0;
-/// A move that rises by this much may be told as stairs, metres.
+/// A move that rises by this much may be called stairs, metres.
 const RISE_M: f64 = 0.2;
 
-/// How many stretches of a path there are of what a text says.
+/// Counts the stretches of a path that fit statements of a text.
 pub(super) struct Stretches<'a> {
     subject: Subject<'a>,
 }
@@ -38,7 +38,7 @@ impl<'a> Stretches<'a> {
         self.subject.evidence.moves.iter().filter(|step| step.rise_m * way >= RISE_M).count()
     }
 
-    /// Places that a claim may mean: separate stays in such a room, or as many such things near the path; 0 where
+    /// Places that a claim may mean: separate stays in a room of that name, or as many things near the path; 0 where
     /// that is not known.
     pub(super) fn places(&self, claim: &Claim) -> usize {
         match claim.class {

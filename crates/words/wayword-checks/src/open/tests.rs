@@ -1,4 +1,4 @@
-//! What the open world says about texts on a made-up building.
+//! Tests of the open world, on an invented building.
 
 use crate::{Building, Evidence, Reach, Subject, Surroundings, Testimony, Turns, check, lift};
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use wayword_core::{
     ViewpointGraph, ViewpointId, graph::GraphError, path::Stop, survey::Known,
 };
 
-/// A hallway along y with a viewpoint every two metres, and rooms behind it: the room of each viewpoint, what is listed
+/// A hallway along y with a viewpoint every two metres, and rooms behind it: the room of each viewpoint, the things listed
 /// there, and how high it lies.
 const BUILDING: [(&str, &[&str], f64); 10] = [
     ("bedroom", &["bed", "lamp", "dresser"], 0.0),
@@ -69,7 +69,7 @@ fn survey_with(floor_m: Option<f64>) -> Survey {
     Survey::of(&graph, known).unwrap().with_objects(vec![hidden])
 }
 
-/// The path between two viewpoints, with what is known of it.
+/// The path between two viewpoints, with its evidence and surroundings.
 fn path(from: usize, to: usize) -> (Path, Evidence, Surroundings) {
     let stop = |at: usize| Stop { position: position(at), viewpoint: Some(id(at)), level: Some(1) };
     let frames: Vec<Frame> = Path::frames_along((from..=to).map(stop).collect(), None);
@@ -106,7 +106,7 @@ fn told(text: &str, from: usize, to: usize) -> (Verdict, Vec<Check>) {
 const PASSES: (Verdict, Vec<Check>) = (Verdict::Pass, Vec::new());
 
 #[test]
-fn what_is_listed_within_three_metres_passes_also_where_no_viewpoint_shows_it() {
+fn listed_objects_within_three_metres_pass_even_if_no_viewpoint_shows_them() {
     assert_eq!(told("Walk past the sofa and stop at the chair.", 0, 3), PASSES);
     assert_eq!(told("Walk past the piano in the hallway.", 0, 3), PASSES);
     assert_eq!(told("Walk along the wall to the corner and through the doorway.", 0, 3), PASSES);
@@ -138,7 +138,7 @@ fn a_room_that_the_path_comes_nowhere_near_fails() {
 }
 
 #[test]
-fn stairs_are_held_against_floor_heights() {
+fn climbs_are_checked_by_floor_heights() {
     for text in ["Go up the stairs.", "Walk up the first few steps of the stairs.", "Climb the stairs and stop."] {
         assert_eq!(told(text, 7, 9).0, Verdict::Pass, "{text}");
         assert_eq!(told(text, 0, 3).1, [Check::Floors], "{text}");
@@ -159,7 +159,7 @@ fn stairs_are_held_against_floor_heights() {
 }
 
 #[test]
-fn what_is_said_twice_needs_two_stretches_of_the_path() {
+fn a_repeated_statement_needs_two_stretches_of_the_path() {
     for text in [
         "Walk past the piano. Turn left. Walk past the piano and stop.",
         "Enter the hallway. Enter the hallway. Wait there.",
@@ -181,7 +181,8 @@ fn what_is_said_twice_needs_two_stretches_of_the_path() {
     }
 }
 
-/// What is said of a text about a path through points two metres apart, each with its height; nothing else is known.
+/// The verdict on a text about a path through points two metres apart, each with its height; no objects or rooms are
+/// known.
 fn told_of(text: &str, points: &[(f64, f64, f64)]) -> (Verdict, Vec<String>) {
     let stop = |(x, y, z): &(f64, f64, f64)| Stop { position: DVec3::new(*x, *y, *z), viewpoint: None, level: Some(1) };
     let frames = Path::frames_along(points.iter().map(stop).collect(), None);
@@ -194,7 +195,7 @@ fn told_of(text: &str, points: &[(f64, f64, f64)]) -> (Verdict, Vec<String>) {
 }
 
 #[test]
-fn a_turn_is_said_as_often_as_the_path_has_it() {
+fn repeated_turns_pass_as_often_as_the_path_has_them() {
     // A walk around a block: three turns to one side.
     let around = [(0.0, 0.0, 1.5), (0.0, 2.0, 1.5), (2.0, 2.0, 1.5), (2.0, 0.0, 1.5), (0.0, 0.0, 1.5)];
     let fails = |text: &str| told_of(text, &around).0 == Verdict::Fail;
@@ -218,7 +219,7 @@ fn stairs_down_and_up_again_are_two_motions() {
 }
 
 #[test]
-fn another_storey_is_held_against_floor_heights() {
+fn storeys_are_checked_by_floor_heights() {
     let down = [(0.0, 0.0, 4.5), (0.0, 2.0, 3.0), (0.0, 4.0, 1.5)];
     for text in ["Take the stairs to the upper floor.", "Go to the floor above.", "Take the elevator up."] {
         assert_eq!(told_of(text, &down), (Verdict::Fail, vec!["the path nowhere goes up".to_owned()]), "{text}");
@@ -229,7 +230,7 @@ fn another_storey_is_held_against_floor_heights() {
 }
 
 #[test]
-fn a_stop_is_held_against_the_end_of_the_path() {
+fn a_stop_is_checked_at_the_end_of_the_path() {
     for text in [
         "Walk down the hallway and stop when you are back in the bedroom.",
         "Walk down the hallway. Stop when you are in the bedroom.",
@@ -246,7 +247,7 @@ fn a_stop_is_held_against_the_end_of_the_path() {
 }
 
 #[test]
-fn what_no_rule_judges_is_unverified() {
+fn statements_that_no_rule_judges_are_unverified() {
     for (text, check) in [
         ("Walk down the hallway. Never go down the stairs.", Check::Floors),
         ("Walk down the hallway. There is no toilet.", Check::Landmarks),
@@ -296,13 +297,13 @@ fn only_the_last_stop_is_where_the_walk_ends() {
 }
 
 #[test]
-fn a_distance_is_held_against_the_length_of_the_path() {
+fn a_distance_is_checked_by_the_length_of_the_path() {
     assert_eq!(told("Walk 6 meters down the hallway.", 0, 3), PASSES);
     assert_eq!(told("Walk 500 meters down the hallway.", 0, 3), (Verdict::Fail, vec![Check::Order]));
 }
 
 #[test]
-fn turns_are_left_to_whoever_compares_walks() {
+fn turns_are_left_to_the_comparison_of_walks() {
     assert_eq!(told("Turn left and walk down the hallway.", 0, 3), PASSES);
     assert_eq!(told("Turn around and walk down the hallway.", 0, 3), PASSES);
     let (_, evidence, _) = path(0, 3);
@@ -320,7 +321,7 @@ fn turns_are_left_to_whoever_compares_walks() {
 }
 
 #[test]
-fn how_far_off_the_nearest_one_is_is_told_to_a_decimal() {
+fn the_distance_of_the_nearest_one_has_one_decimal() {
     let (_, evidence, around) = path(0, 3);
     let reach = Reach { surroundings: Some(&around), calibration: None };
     let checked = check("Walk through the kitchen.", Subject::open(&evidence, &any(), reach));
@@ -329,7 +330,7 @@ fn how_far_off_the_nearest_one_is_is_told_to_a_decimal() {
 }
 
 #[test]
-fn without_surroundings_absence_says_nothing() {
+fn without_surroundings_an_absence_is_unverified() {
     let (_, evidence, _) = path(0, 3);
     let verdict = |text: &str| check(text, Subject::open(&evidence, &any(), Reach::default())).verdict();
     for text in ["Walk into the kitchen.", "Walk past the toilet."] {
@@ -339,7 +340,7 @@ fn without_surroundings_absence_says_nothing() {
 }
 
 #[test]
-fn another_text_that_says_the_same_lifts_a_failure() {
+fn lift_turns_a_confirmed_failure_into_unverified() {
     let (_, evidence, around) = path(0, 3);
     let reach = Reach { surroundings: Some(&around), calibration: None };
     let verdict = |text: &str, other: &str| {

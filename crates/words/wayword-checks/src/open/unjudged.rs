@@ -1,5 +1,5 @@
-//! What a text says that no rule judges: denials, which one of several a thing is, numbers and the compass. A text that
-//! says such a thing is not right because nothing else in it is wrong.
+//! Lists the statements of a text that no rule judges: denials, which one of several a thing is, numbers and the
+//! compass. A text with any of them is unverified, even if the rest of it is right.
 
 use super::stretches::Stretches;
 use crate::{Subject, evidence::NEAR_M, finding};
@@ -13,10 +13,10 @@ use wayword_language::{
 /// From this number on, which one of several is meant, or how many there are, is a claim by itself. People say "the first
 /// door" of the one before them, and "the two chairs" of those that they see.
 const MANY: u32 = 3;
-/// How far before a turn the words may stand that say which one it is.
+/// How far before a turn the words may be that give its number.
 const WORDS_BEFORE: usize = 2;
 
-/// What cannot be checked in a text; `reading` still has what it denies.
+/// The statements of a text that cannot be checked; `reading` still has its denied events.
 pub(super) fn unjudged(text: &str, reading: &Reading, subject: Subject<'_>) -> Vec<Finding> {
     let tokens = tokens(text);
     let unverified = |check, reason: &str, span| finding(check, Verdict::Unverified, reason, Some(span));
@@ -51,7 +51,7 @@ pub(super) fn unjudged(text: &str, reading: &Reading, subject: Subject<'_>) -> V
     found
 }
 
-/// The check that something that a text says belongs to.
+/// The check that a statement belongs to.
 fn check_of(what: &What) -> Option<Check> {
     match what {
         What::Place(_) => Some(Check::Landmarks),
@@ -78,7 +78,7 @@ fn is_moment_too_far(tokens: &[Token], span: [usize; 2]) -> bool {
     sentence.is_some_and(|sentence| sentence.windows(2).any(|pair| pair[0].word == "too" && pair[1].word == "far"))
 }
 
-/// Whether a text says which one of several a place is, or more of them than are listed near the path.
+/// Whether a text identifies a place among several, or names more of them than are listed near the path.
 fn is_counted(place: &Place, subject: Subject<'_>) -> bool {
     let near = || subject.reach.surroundings.map_or(0, |around| around.spots(&place.name, NEAR_M).len());
     let has_number = matches!(place.ordinal, Some(Ordinal::Number(number)) if number >= MANY);

@@ -1,4 +1,4 @@
-//! The weights that ship: how much the silence of labels says.
+//! The weights that ship with the program: how much a missing label means for a claim.
 
 use super::sight::{Case, Missed, class_name};
 use serde::{Deserialize, Serialize};
@@ -8,12 +8,12 @@ use std::{
 };
 use wayword_language::lexicon::{Class, room_name};
 
-/// The file of the weights. Its head says where they come from, and which command fitted them.
+/// The file of the weights. Its head names their source and the command that fitted them.
 const FILE: &str = include_str!("weights.toml");
 
 static SHIPPED: LazyLock<Weights> = LazyLock::new(|| Weights::read(FILE).unwrap_or_default());
 
-/// How much the silence of the evidence says about a claim.
+/// How much a missing label means for a claim.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Weights {
@@ -45,7 +45,7 @@ impl Weights {
     /// Reads a file of weights.
     ///
     /// # Errors
-    /// When it is no such file.
+    /// When its form is wrong.
     pub fn read(file: &str) -> Result<Self, toml::de::Error> {
         toml::from_str(file)
     }
@@ -65,7 +65,7 @@ impl Weights {
     }
 
     /// The logarithm of how much likelier the evidence is if the claim is wrong than if it is true; `None` where there
-    /// is no table for such claims.
+    /// is no table for claims of this kind.
     #[must_use]
     pub fn log_ratio(&self, missed: &Missed) -> Option<f64> {
         let table = self.table(missed.case)?;
