@@ -1,4 +1,4 @@
-//! A building as a follower knows it: the whole of it by a survey, or what was seen of it on the way.
+//! The follower's knowledge of a building: all of it from a survey, or the part that was seen on the way.
 
 use crate::near::{Near, Nearness};
 use std::{
@@ -9,7 +9,7 @@ use std::{
 use wayword_core::{DVec3, Survey};
 use wayword_language::lexicon::{normal, thing};
 
-/// What is known of a building. Positions are metres, z up; their frame may be any, as long as it is one.
+/// The known part of a building. Positions are metres, z up, in any one frame of reference.
 #[derive(Debug, Default)]
 pub struct Building {
     pub(crate) viewpoints: Vec<Viewpoint>,
@@ -53,9 +53,9 @@ pub struct Place {
     pub things: Vec<(String, Option<f64>)>,
 }
 
-/// How far away an object is taken to be that is seen from a path, metres.
+/// Assumed distance of an object that is seen from a path, metres.
 const NEARBY_M: f64 = 1.5;
-/// Hops that are shorter lead nowhere, metres: some graphs have two viewpoints at a place.
+/// Shorter hops count as staying at the place, metres: some graphs have two viewpoints at one place.
 const SHORT_M: f64 = 0.3;
 /// The least slope of a hop that is stairs.
 const STAIRS_SLOPE: f64 = 0.25;
@@ -95,7 +95,7 @@ impl Building {
         building
     }
 
-    /// What is known along a path alone: a place for each of its frames, one after another.
+    /// The building along a path, without the rest: a viewpoint for each of its frames, one after another.
     #[must_use]
     pub fn along(path: Vec<Place>) -> Self {
         let mut building = Self::default();
@@ -117,7 +117,7 @@ impl Building {
         building
     }
 
-    /// Notes at which viewpoints a way up or down begins.
+    /// Records at which viewpoints a way up or down begins.
     pub(crate) fn find_stairs(&mut self) {
         for at in 0..self.viewpoints.len() {
             let here = &self.viewpoints[at];
@@ -133,7 +133,7 @@ impl Building {
         }
     }
 
-    /// Forgets what was found of names, because something new is known.
+    /// Discards the computed distances, because the building has changed.
     pub(crate) fn changed(&mut self) {
         self.near.get_mut().unwrap_or_else(PoisonError::into_inner).clear();
         self.find_stairs();
@@ -151,7 +151,7 @@ impl Building {
         self.viewpoints.is_empty()
     }
 
-    /// How near each viewpoint is to what a name means. It is found once for each name.
+    /// The distance of each viewpoint from a named place. It is computed once for each name.
     pub(crate) fn near(&self, what: &Nearness) -> Arc<Near> {
         let mut near = self.near.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = near.get(what) {
@@ -162,8 +162,8 @@ impl Building {
         found
     }
 
-    /// What tells a viewpoint from others: its room where no other lies in one of that name, or else an object that is seen from
-    /// there alone.
+    /// A name that distinguishes a viewpoint from others: its room if none of the others lies in a room of that name,
+    /// or else an object that is seen from there alone.
     #[must_use]
     pub fn told_apart_by(&self, viewpoint: usize, others: &[usize]) -> Option<&str> {
         let room = |at: usize| self.viewpoints[at].room.as_deref();

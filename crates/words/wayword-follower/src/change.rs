@@ -1,7 +1,8 @@
-//! What one change of an instruction gains: how much better it would fit the walk that it was written for.
+//! Measures how much better an instruction would fit its walk after one small change, such as the other side for a
+//! turn.
 //!
-//! A text that says "left" where the walk turns right fits better with that one word changed. Only the known walk is
-//! looked at, so no graph is needed.
+//! A text with "left" where the walk turns right fits better with that one word changed. Only the known walk is
+//! examined, so no graph is needed.
 
 use crate::{building::Building, guide::Guide, one_walk::OneWalk, weights::Weights};
 use wayword_core::{Climb, Side};
@@ -21,22 +22,23 @@ pub enum Kind {
     NoStep,
 }
 
-/// A change, and what it gains.
+/// A change of one step, and its gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
-    /// What is changed.
+    /// The kind of change.
     pub kind: Kind,
     /// The step, by its number.
     pub step: usize,
-    /// The byte range in the text of what is changed: of the turn's words, or of the step.
+    /// The byte range of the changed words: those of the turn, or of the whole step.
     pub span: [usize; 2],
     /// How much better the changed text fits the walk, in natural logs; negative where it fits worse.
     pub gain: f64,
 }
 
-/// What each single change gains for a walk, the most gainful first.
+/// The gains of all single changes for a walk, the highest first.
 ///
-/// `walk` has the viewpoints of the walk, and `heading_rad` says which way it begins (radians from +y, clockwise).
+/// `walk` lists the viewpoints of the walk, and `heading_rad` is the direction of the walker at its start (radians from
+/// +y, clockwise).
 #[must_use]
 pub fn changes(guide: &Guide, building: &Building, walk: &[usize], heading_rad: f64, weights: &Weights) -> Vec<Change> {
     let known = OneWalk::new(building, walk, heading_rad, weights);

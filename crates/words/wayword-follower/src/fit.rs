@@ -1,5 +1,6 @@
-//! How well an instruction fits walks: the sum over all ways to cut a walk into stretches, one for each step of the
-//! text, of what speaks for each step over its stretch.
+//! Scores how well an instruction fits walks: the sum over all ways to cut a walk into stretches, one for each step of
+//! the text, of the weights of the steps' features. Dynamic programming over the tree computes it for all walks at
+//! once.
 
 use crate::{
     features::{MOST_HOPS, Stretch, ending, stretch},
@@ -8,18 +9,19 @@ use crate::{
     weights::Weights,
 };
 
-/// Most steps of a text times walks. A text of more steps should not be followed, because it would fill the memory.
+/// Largest product of a text's steps and the number of walks. Beyond it the text should not be followed, because the
+/// tables would fill the memory.
 pub const MOST_WORK: usize = 2_000_000;
 
-/// How well an instruction fits the walks of a tree.
+/// The scores of an instruction for all walks of a tree.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// For each number of steps, from none to all, and each node: the log of the sum over all ways in which these steps lead
-    /// there.
+    /// For each number of steps, from none to all, and each node: the log of the sum over all ways in which these steps
+    /// lead there.
     sums: Vec<Vec<f64>>,
-    /// For each step, node and number of hops: what speaks for the step over the stretch that ends there.
+    /// For each step, node and number of hops: the weight of the step over the stretch that ends there.
     stretches: Vec<f64>,
-    /// For each node: what speaks for the end of the walk there.
+    /// For each node: the weight of the walk's end there.
     endings: Vec<f64>,
 }
 
@@ -31,7 +33,7 @@ impl Fit {
         let mut sums = vec![vec![f64::NEG_INFINITY; nodes]; steps + 1];
         sums[0][0] = 0.0;
         if steps == 0 {
-            // A text that tells nothing speaks against no walk: only the endings count.
+            // A text without steps fits every walk: only the endings count.
             sums[0].fill(0.0);
         }
         let mut stretches = vec![f64::NEG_INFINITY; steps * nodes * (MOST_HOPS + 1)];
@@ -61,7 +63,8 @@ impl Fit {
         Self { sums, stretches, endings }
     }
 
-    /// How well the whole text fits the walk that ends at a node: higher is better, and only differences mean anything.
+    /// The score of the whole text for the walk that ends at a node: higher is better, and only differences are
+    /// meaningful.
     #[must_use]
     pub fn score(&self, walk: usize) -> f64 {
         self.sums[self.sums.len() - 1][walk] + self.endings[walk]
@@ -72,8 +75,8 @@ impl Fit {
         self.sums[steps][node]
     }
 
-    /// Adds to `slope` how the goal changes with each weight. `by_score` says for each node how the goal changes with its
-    /// score. `by_sums` says the same for the sums after some of the steps; it may be empty.
+    /// Adds the gradient of the goal by each weight to `slope`. `by_score` is, for each node, the derivative of the
+    /// goal by the node's score. `by_sums` has the derivatives by the sums after some of the steps; it may be empty.
     pub(crate) fn add_slope(
         &self,
         trial: &Trial<'_>,
@@ -115,14 +118,14 @@ impl Fit {
     }
 }
 
-/// What is too small to matter.
+/// Shares below this are ignored.
 const SMALL: f64 = 1e-6;
 
 fn place(nodes: usize, step: usize, end: usize, hops: usize) -> usize {
     (step * nodes + end) * (MOST_HOPS + 1) + hops
 }
 
-/// The log of the sum of two numbers whose logs are given.
+/// The log of the sum of two numbers, from their logs.
 pub(crate) fn log_sum(a: f64, b: f64) -> f64 {
     let (high, low) = if a > b { (a, b) } else { (b, a) };
     if low == f64::NEG_INFINITY { high } else { high + (low - high).exp().ln_1p() }

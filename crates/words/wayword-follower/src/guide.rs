@@ -1,4 +1,5 @@
-//! An instruction as a follower uses it.
+//! An instruction in the form that a follower uses: its steps with the places that they name, and their location in a
+//! building.
 
 use crate::building::Building;
 use crate::near::{Near, Nearness};
@@ -12,17 +13,17 @@ use wayword_language::{
     },
 };
 
-/// What an instruction tells a walker, step by step, wherever that is.
+/// An instruction, step by step, independent of a building.
 #[derive(Debug, Clone)]
 pub struct Guide {
     pub(crate) steps: Vec<Told>,
     /// The rooms that it names.
     rooms: Vec<String>,
-    /// Whether it tells no way, but only a place to go to: "Go to the attic and dust the globe".
+    /// Whether it describes no way, but only a place to go to: "Go to the attic and dust the globe".
     pub(crate) is_goal: bool,
 }
 
-/// A step, and what it names.
+/// A step with the places that it names.
 #[derive(Debug, Clone)]
 pub(crate) struct Told {
     pub(crate) step: Step,
@@ -33,17 +34,17 @@ pub(crate) struct Told {
 /// A room or an object that a step names.
 #[derive(Debug, Clone)]
 pub(crate) struct Mention {
-    /// The byte range of its name in the text; `None` where the step only says that it leads outdoors.
+    /// The byte range of its name in the text; `None` if the step only implies that it leads outdoors.
     pub(crate) span: Option<[usize; 2]>,
     pub(crate) relation: Relation,
     pub(crate) side: Option<Side>,
     /// Whether a turn happens at it.
     pub(crate) tells_turn: bool,
-    /// What it may be, the likeliest first.
+    /// Its possible meanings, the likeliest first.
     pub(crate) meanings: Vec<Nearness>,
 }
 
-/// The kinds of steps, by what they tell first.
+/// The kinds of steps, by their most important content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Turn,
@@ -58,7 +59,7 @@ pub(crate) enum Kind {
     /// To, past or along something.
     Go,
     Other,
-    /// The first step of a text that tells no way, but only a place to go to.
+    /// The first step of a text that describes no way, but only a place to go to.
     Goal,
     /// A later step of such a text.
     Task,
@@ -86,7 +87,7 @@ impl Kind {
 }
 
 impl Told {
-    /// Whether it tells anything of the way: a turn, stairs, where to stop, what to pass.
+    /// Whether it describes a part of the way: a turn, stairs, where to stop, a thing to pass.
     fn tells_way(&self) -> bool {
         let is_way = |mention: &Mention| {
             matches!(mention.relation, Relation::OutOf | Relation::Through | Relation::Past | Relation::Along)
@@ -95,13 +96,13 @@ impl Told {
         turn.is_some() || climb.is_some() || *stops || *is_straight || *is_condition || self.mentions.iter().any(is_way)
     }
 
-    /// Makes it tell no turn.
+    /// Removes its turn.
     pub(crate) fn leave_out_turn(&mut self) {
         self.step.turn = None;
         self.kind = Kind::of(&self.step);
     }
 
-    /// Changes how it has to do with one of its places.
+    /// Changes its relation to one of its places.
     pub(crate) fn change_relation(&mut self, place: usize, relation: Relation) {
         if let Some(mention) = self.mentions.get_mut(place) {
             mention.relation = relation;
@@ -170,7 +171,7 @@ impl Guide {
         self.steps.len()
     }
 
-    /// Whether it tells nothing.
+    /// Whether it has no step.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
@@ -181,13 +182,13 @@ impl Guide {
         self.rooms.iter().any(|told| same_room(room, told))
     }
 
-    /// The places that it names: step by step, the number of the step and the place in its list.
+    /// The places that it names, each as the number of the step and the position in the step's list.
     pub(crate) fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let of_step = |(step, told): (usize, &Told)| (0..told.mentions.len()).map(move |place| (step, place));
         self.steps.iter().enumerate().flat_map(of_step)
     }
 
-    /// Whether it tells anything within a byte range of its text, and something is left without that.
+    /// Whether it has a turn or a place within a byte range of its text, and still has a step without that.
     pub(crate) fn stands_without(&self, [from, to]: [usize; 2]) -> bool {
         let is_within = |span: [usize; 2]| from <= span[0] && span[1] <= to;
         let loses_turn = |told: &Told| told.step.turn_span.is_some_and(is_within);
@@ -207,7 +208,7 @@ impl Guide {
     }
 }
 
-/// What a name may mean. A name that a building has nowhere may be known there by its last word.
+/// The possible meanings of a name. If a building lacks the full name, the last word of it may be known there.
 fn meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<Nearness> {
     let meaning = |is_room: bool, name: &str| Nearness { is_room, name: name.to_owned() };
     let last = name.rsplit_once(' ').map(|(_, last)| last);
@@ -218,18 +219,18 @@ fn meanings(name: &str, is_room: bool, is_thing: bool) -> Vec<Nearness> {
     meanings
 }
 
-/// An instruction in a building: what it names is found there.
+/// An instruction in a building, with its places located there.
 #[derive(Debug)]
 pub struct Trial<'a> {
     pub(crate) guide: &'a Guide,
     pub(crate) building: &'a Building,
-    /// For each step, its mentions that the building has.
+    /// For each step, those of its mentions that the building has.
     pub(crate) found: Vec<Vec<Found<'a>>>,
     /// For each viewpoint, whether the text names its room; `None` where the room has no name.
     pub(crate) tells_room: Vec<Option<bool>>,
 }
 
-/// A mention, and how near each viewpoint is to it.
+/// A mention, and the distance of each viewpoint from it.
 #[derive(Debug)]
 pub(crate) struct Found<'a> {
     pub(crate) mention: &'a Mention,
@@ -238,13 +239,14 @@ pub(crate) struct Found<'a> {
 }
 
 impl<'a> Trial<'a> {
-    /// Finds in a building what an instruction names. What the building lacks says nothing about walks.
+    /// Locates the places of an instruction in a building. A place that the building lacks has no influence on the
+    /// scores.
     #[must_use]
     pub fn new(guide: &'a Guide, building: &'a Building) -> Self {
         Self::with(guide, building, false)
     }
 
-    /// Finds it in what was seen of a building. What was not seen may be anywhere else.
+    /// Locates them in the visited part of a building. Unseen places may be anywhere else.
     #[must_use]
     pub(crate) fn seen(guide: &'a Guide, building: &'a Building) -> Self {
         Self::with(guide, building, true)

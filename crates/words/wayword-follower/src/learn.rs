@@ -1,22 +1,22 @@
-//! Fits the weights to texts of known walks, by the slope of the likelihood.
+//! Fits the weights of the features to texts of known walks, by gradient descent on the likelihood.
 //!
-//! The likelihood of a walk is its share among all walks of a tree: a softmax of the fits. Adam follows the slope; the
-//! weights that count are the mean over the last round.
+//! The likelihood of a walk is its share among all walks of a tree: a softmax of their scores. Adam follows the
+//! gradient; the result is the mean of the weights over the last round.
 
 use crate::{features::tables, fit::Fit, guide::Trial, posterior::shares, tree::Tree, weights::Weights};
 
-/// How a fit goes.
+/// The settings of a fit.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
     /// Rounds over all texts.
     pub rounds: usize,
-    /// Texts between two steps.
+    /// Number of texts for each step of the descent.
     pub batch: usize,
     /// Length of the first step; the steps get shorter up to the end.
     pub rate: f64,
-    /// How strongly weights are held to where they began.
+    /// Strength of the pull of the weights towards their start values.
     pub hold: f64,
-    /// How much more strongly those of fine tables are.
+    /// Factor of this strength for the weights of fine tables.
     pub hold_fine: f64,
 }
 
@@ -26,7 +26,7 @@ impl Default for Plan {
     }
 }
 
-/// The slope of the loss of texts, by weight, and the loss.
+/// The gradient of the loss over texts, and the loss.
 #[derive(Debug, Clone)]
 pub struct Slope {
     values: Vec<f64>,
@@ -42,7 +42,8 @@ impl Default for Slope {
 }
 
 impl Slope {
-    /// Adds a text. `goal` is the known walk among the tree's. The start alone is no walk.
+    /// Adds a text. `goal` is the known walk's number in the tree. The start alone is no walk, so it cannot be the
+    /// goal.
     pub fn add(&mut self, trial: &Trial<'_>, tree: &Tree, goal: usize, weights: &Weights) {
         let fit = Fit::new(trial, tree, weights);
         let shares = shares(&fit, tree);
@@ -56,15 +57,16 @@ impl Slope {
         self.texts += 1;
     }
 
-    /// Adds an empty text of a walk. It counts among no texts: what it teaches is what a reader does that is told nothing.
+    /// Adds an empty text for a walk, which teaches the follower a default for texts without information. It does not
+    /// count in the number of texts.
     pub fn add_floor(&mut self, nothing: &Trial<'_>, tree: &Tree, goal: usize, weights: &Weights) {
         let mut floor = Self::default();
         floor.add(nothing, tree, goal, weights);
         self.values.iter_mut().zip(&floor.values).for_each(|(a, b)| *a += b);
     }
 
-    /// Adds a text of a walk against the same text with one change that makes it wrong: the text as it is should fit better.
-    /// `walk` is a tree of that walk alone.
+    /// Adds a pair of texts for a walk: the right one, and one that a single change made wrong. The right one should
+    /// score higher. `walk` is a tree of that walk alone.
     pub fn add_contrast(
         &mut self,
         right: &Trial<'_>,
@@ -88,7 +90,7 @@ impl Slope {
         }
     }
 
-    /// Adds another slope.
+    /// Adds another gradient.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         self.values.iter_mut().zip(&other.values).for_each(|(a, b)| *a += b);
@@ -98,7 +100,7 @@ impl Slope {
     }
 }
 
-/// A fit at work.
+/// A running fit.
 #[derive(Debug)]
 pub struct Learner {
     descent: Descent,
@@ -117,7 +119,7 @@ impl Learner {
         Weights::from_values(&self.descent.values)
     }
 
-    /// Goes one step down a slope; `round` counts from 0.
+    /// Goes one step down the gradient; `round` counts from 0.
     pub fn step(&mut self, round: usize, slope: &Slope) {
         self.descent.step(round, &slope.values, slope.texts);
     }
@@ -129,7 +131,7 @@ impl Learner {
     }
 }
 
-/// How strongly each weight is held to where it began.
+/// For each weight, the strength of the pull towards its start value.
 pub(crate) fn holds(plan: Plan) -> Vec<f64> {
     let mut holds = vec![plan.hold; tables::COUNT];
     for table in tables::ALL.iter().filter(|table| table.is_fine) {
@@ -138,7 +140,7 @@ pub(crate) fn holds(plan: Plan) -> Vec<f64> {
     holds
 }
 
-/// Adam, on its way down a slope.
+/// The Adam optimiser with its state.
 #[derive(Debug)]
 pub(crate) struct Descent {
     plan: Plan,
@@ -159,9 +161,9 @@ impl Descent {
         Self { plan, start, values, holds, mean, square, steps: 0, sum, summed: 0 }
     }
 
-    /// Goes one step down; `slope` is a sum over `examples`.
+    /// Goes one step down; `slope` is the sum of the gradients of `examples` examples.
     pub(crate) fn step(&mut self, round: usize, slope: &[f64], examples: usize) {
-        /// Adam's usual shares of the past.
+        /// Adam's usual decay rates.
         const PAST: [f64; 2] = [0.9, 0.999];
         let left = 1.0 - round as f64 / self.plan.rounds.max(1) as f64;
         self.steps += 1;

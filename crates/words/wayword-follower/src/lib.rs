@@ -1,10 +1,11 @@
-//! Follows an instruction over a viewpoint graph: which walks it fits, and how well.
+//! Follows an instruction over a viewpoint graph: finds out which walks the text fits, and how well.
 //!
-//! [`Guide`] is an instruction, step by step. [`Building`] is what is known of the place, and [`Tree`] the walks that are
-//! thought of. [`Fit`] says how well the text fits each of them: a walk is cut into stretches, one for each step, in all
-//! ways. [`learn`] fits the weights.
+//! [`Guide`] is an instruction, step by step, [`Building`] the known part of the place, and [`Tree`] the set of
+//! possible walks. [`Fit`] scores each walk: it cuts the walk into stretches, one for each step of the text, in all
+//! possible ways, and adds up weights of features such as "a left turn is described and the stretch bends left".
+//! [`learn`] fits these weights to texts of known walks.
 //!
-//! Architecture invariant: nothing here knows an agent, a writer or a file.
+//! Architecture invariant: no module here knows an agent, a writer or a file.
 
 mod building;
 pub mod change;

@@ -1,11 +1,11 @@
-//! How near viewpoints are to what a text names.
+//! Computes for each viewpoint of a building how near it is to a room or thing that a text names.
 
 use crate::building::{Building, Thing};
 use std::collections::BTreeSet;
 use wayword_core::DVec3;
 use wayword_language::lexicon::{agree, room_name, same_room};
 
-/// What is looked for: a room of a name, or an object.
+/// The place that is searched: a room of a name, or a thing.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Nearness {
     pub(crate) is_room: bool,
@@ -18,22 +18,22 @@ pub(crate) struct Near {
     /// For each viewpoint, the class of its distance: 0 there, then farther and farther up to [`FAR`]; [`UNKNOWN`] where
     /// the walker was not.
     pub(crate) class: Vec<usize>,
-    /// For each viewpoint, where the nearest is.
+    /// For each viewpoint, the position of the nearest one.
     pub(crate) nearest: Vec<Option<DVec3>>,
-    /// 0 where few viewpoints are near one, 2 where many are.
+    /// How many viewpoints are near one: 0 few, 1 some, 2 many.
     pub(crate) commonness: usize,
-    /// Whether there is one.
+    /// Whether the building has one.
     pub(crate) exists: bool,
 }
 
-/// The class of what is far away.
+/// The class of viewpoints that are far from it.
 pub(crate) const FAR: usize = 5;
-/// The class where it is not known.
+/// The class of viewpoints where the walker was not and the distance is unknown.
 pub(crate) const UNKNOWN: usize = 6;
 /// Number of classes.
 pub(crate) const CLASSES: usize = 7;
 
-/// What a storey between two places adds to their distance, metres.
+/// Distance that a storey between two places adds, metres.
 const STOREY_M: f64 = 6.0;
 
 impl Near {
@@ -60,7 +60,7 @@ impl Near {
         let found: Vec<(usize, Option<DVec3>)> = (0..building.len())
             .map(|at| {
                 let places = things.iter().map(|thing| (thing.position, thing.seen_from.contains(&at)));
-                // The eye is over most things: only what is well above it, or below its feet, is on another storey.
+                // The eye is above most things: only things well above it, or below its feet, are on another storey.
                 let (far_m, place) = nearest(building.viewpoints[at].position, places, [-2.2, 1.0]);
                 (class(at, far_m), place)
             })
@@ -95,7 +95,7 @@ impl Near {
         Self::of(building, found, exists, 1)
     }
 
-    /// `least` is the first class that says nothing where the walker was not.
+    /// Viewpoints where the walker was not have an unknown distance if their class would be `least` or more.
     fn of(building: &Building, found: Vec<(usize, Option<DVec3>)>, exists: bool, least: usize) -> Self {
         let known = |(at, (class, _)): (usize, &(usize, Option<DVec3>))| match building.viewpoints[at].is_known {
             false if *class >= least => UNKNOWN,
@@ -109,8 +109,8 @@ impl Near {
     }
 }
 
-/// The nearest of these places, and how far it is over ground, metres. A place that is seen from here, or between these
-/// heights, is on this storey.
+/// The distance over ground to the nearest of these places, metres, and its position. A place that is seen from here,
+/// or at a height between the limits, is on this storey.
 fn nearest(
     from: DVec3,
     places: impl Iterator<Item = (DVec3, bool)>,

@@ -1,9 +1,9 @@
-//! Which of several walks an instruction means.
+//! Computes how likely an instruction means each of several walks.
 
 use crate::{fit::Fit, tree::Tree};
 
-/// The share of each walk: how likely it is that the text means it, if it means one of the tree. The start alone is no
-/// walk.
+/// The share of each walk: the probability that the text means it, given that it means one of the tree. The start alone
+/// is no walk.
 #[must_use]
 pub fn shares(fit: &Fit, tree: &Tree) -> Vec<f64> {
     let scores: Vec<f64> =

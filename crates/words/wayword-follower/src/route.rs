@@ -1,4 +1,5 @@
-//! An instruction against the walk that it was written for: which of its steps are wrong, and whether it leads elsewhere.
+//! Compares an instruction with the walk that it was written for: finds wrong steps, and checks whether the text leads
+//! elsewhere.
 
 use crate::{
     building::Building,
@@ -12,14 +13,14 @@ use crate::{
 };
 use wayword_core::{Check, Climb, Finding, Side, Verdict};
 
-/// A walk that is known: that of a dataset, or of a robot.
+/// A known walk, from a dataset or of a robot.
 #[derive(Debug, Clone, Copy)]
 pub struct Known<'a> {
-    /// Where it is.
+    /// Its building.
     pub building: &'a Building,
     /// Its viewpoints.
     pub walk: &'a [usize],
-    /// Which way the walker looks first, radians from +y clockwise.
+    /// The walker's first direction, radians from +y clockwise.
     pub heading_rad: f64,
 }
 
@@ -29,9 +30,9 @@ impl Known<'_> {
     }
 }
 
-/// From which gain on a change of a step is taken for what the text should say, natural logs. `wayword-measure
-/// fit-follower` prints which share of people's texts gains more: 1.8 % by a turn to the other side, and .1 to .3 % by
-/// each of the others. In other buildings, it is about a third more.
+/// Least gain from which a change of a step is taken for an error of the text, natural logs. `wayword-measure
+/// fit-follower` prints the share of people's texts that gain more: 1.8 % by a turn to the other side, and .1 to .3 %
+/// by each of the others. In other buildings, it is about a third more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thresholds {
     /// Of a turn to the other side.
@@ -40,7 +41,7 @@ pub struct Thresholds {
     pub no_turn: f64,
     /// Of a climb the other way.
     pub climb: f64,
-    /// Of two places the other way round.
+    /// Of two swapped places.
     pub swap: f64,
     /// How much better another walk has to fit.
     pub route: f64,
@@ -52,20 +53,20 @@ impl Default for Thresholds {
     }
 }
 
-/// What a follower says of an instruction and its walk alone.
+/// The result of comparing an instruction with its walk alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// What is wrong with its steps; empty where nothing is, and where it has too many.
+    /// The wrong steps; empty if there is none, and if the text has too many steps.
     pub wrong: Vec<Finding>,
-    /// What the best change of a turn gains, natural logs: the higher, the likelier the text has a wrong turn. `None` where
-    /// it tells none.
+    /// The gain of the best change of a turn, natural logs: the higher, the likelier the text has a wrong turn. `None`
+    /// if it has no turn.
     pub turn_gain: Option<f64>,
 }
 
-/// Why nothing is said of other walks.
+/// The reason why a text is not compared with other walks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unfollowed {
-    /// Only the walk itself is known. Its turns are judged all the same.
+    /// Only the walk itself is known. Its turns are still checked.
     NoGraph,
     /// The work grows with the square of the steps.
     TooManySteps,
@@ -88,25 +89,25 @@ impl Unfollowed {
 /// Most steps of a text that is followed. People's texts have 20 at most.
 pub(crate) const MOST_STEPS: usize = 60;
 
-/// An instruction against all walks from the same start.
+/// The comparison of an instruction with all walks from the same start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
-    /// What `check` says of it.
+    /// The finding for the report of checks.
     pub finding: Finding,
     /// The share of the known walk: how likely it is that the text means it.
     pub share: f64,
     /// The share of the likeliest other walk.
     pub other: f64,
-    /// The viewpoints at which walks end that fit about as well as the known one, its own first: one of each group that
-    /// lies close together.
+    /// The end viewpoints of walks that fit about as well as the known one, its own first: one of each group of close
+    /// viewpoints.
     pub ends: Vec<usize>,
 }
 
-/// How far apart two ends lie that are told apart, metres: success on R2R is to stop nearer than this.
+/// Ends that are at least this far apart count as different, metres: success on R2R is to stop nearer than this.
 const APART_M: f64 = 3.0;
-/// From which share of the known walk's share on another walk fits about as well. Of people's texts in R2R's train split
-/// that the follower takes to the right place, 5 % have a second place that near to the best (15 % at a half); of those that
-/// it takes to a wrong one, 21 % (50 %): `wayword-measure reader-figures`.
+/// Another walk fits about as well from this fraction of the known walk's share on. Of people's texts in R2R's train
+/// split that the follower takes to the right place, 5 % have a second place that near to the best (15 % at a half); of
+/// those that it takes to a wrong one, 21 % (50 %): `wayword-measure reader-figures`.
 const AS_WELL: f64 = 0.8;
 
 /// Judges an instruction by the walk that it was written for.
@@ -123,7 +124,7 @@ pub fn judge(guide: &Guide, known: Known<'_>, weights: &Weights, thresholds: Thr
     Judged { wrong, turn_gain }
 }
 
-/// The steps that one change would make fit much better, each told once.
+/// The steps that one change would make fit much better, each with one finding.
 fn wrong_steps(guide: &Guide, changes: &[Change], thresholds: Thresholds) -> Vec<Finding> {
     let mut found: Vec<(usize, Finding)> = Vec::new();
     for change in changes {
@@ -183,7 +184,7 @@ impl Posterior {
         Ok(Self { tree, own, shares })
     }
 
-    /// Whether two walks end at places that are told apart.
+    /// Whether two walks end at different places.
     fn are_apart(&self, building: &Building, a: usize, b: usize) -> bool {
         let position = |walk: usize| building.viewpoints[self.tree.end(walk)].position;
         position(a).distance(position(b)) >= APART_M
@@ -195,10 +196,10 @@ impl Posterior {
     }
 }
 
-/// How likely an instruction leads to the end of the walk that it was written for, or nearer to it than 3 m, from 0 to 1.
+/// The probability, from 0 to 1, that an instruction leads to the end of its walk or within 3 m of it.
 ///
 /// # Errors
-/// With the reason, where that cannot be said.
+/// With the reason, if this cannot be decided.
 pub fn leads_there(
     guide: &Guide,
     known: Known<'_>,
@@ -210,11 +211,11 @@ pub fn leads_there(
     Ok((1.0 - elsewhere).clamp(0.0, 1.0))
 }
 
-/// Whether an instruction leads elsewhere than the walk that it was written for. `prior` says which other walks are thought
-/// of; it is `None` where none is known.
+/// Checks whether an instruction leads elsewhere than the walk that it was written for. `prior` selects the other walks
+/// that are considered; `None` if the graph is unknown.
 ///
 /// # Errors
-/// With the reason, where that cannot be said.
+/// With the reason, if this cannot be decided.
 pub fn route(
     guide: &Guide,
     known: Known<'_>,
@@ -251,7 +252,7 @@ pub fn route(
     Ok(Route { finding, share, other, ends })
 }
 
-/// The byte range of the change that gains most, where one gains anything.
+/// The byte range of the change with the highest gain, if that is positive.
 fn fault(changes: &[Change]) -> Option<[usize; 2]> {
     changes.first().filter(|change| change.gain > 0.0).map(|change| change.span)
 }

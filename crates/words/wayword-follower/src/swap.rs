@@ -1,5 +1,5 @@
-//! Two places of an instruction that fit the walk that it was written for better the other way round: "past the sofa to
-//! the sink" where the sink comes first.
+//! Finds two places of an instruction that fit its walk better in the opposite order: "past the sofa to the sink" where
+//! the sink comes first.
 
 use crate::{
     building::Building,
@@ -9,7 +9,7 @@ use crate::{
 };
 use wayword_language::reading::steps::Relation;
 
-/// Two places of a text, and what it gains to name each where the other is named.
+/// Two places of a text, and the gain of naming each where the other is named.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swap {
     /// Their names, in the order of the text.
@@ -20,12 +20,13 @@ pub struct Swap {
     pub gain: f64,
 }
 
-/// Places of a text that are looked at. The work grows with their square.
+/// Most places of a text that are examined. The work grows with their square.
 const MOST_PLACES: usize = 14;
 
-/// The two places that gain most; `None` where the building has fewer than two of those that the text names.
+/// The two places with the highest gain; `None` if the building has fewer than two of the named places.
 ///
-/// `walk` has the viewpoints of the walk, and `heading_rad` says which way it begins (radians from +y, clockwise).
+/// `walk` lists the viewpoints of the walk, and `heading_rad` is the direction of the walker at its start (radians from
+/// +y, clockwise).
 #[must_use]
 pub fn best_swap(
     guide: &Guide,
@@ -58,7 +59,7 @@ pub fn best_swap(
     best
 }
 
-/// Where a guide names a place.
+/// A place in a guide, with its words.
 struct Named {
     step: usize,
     place: usize,
@@ -71,15 +72,15 @@ impl Named {
     }
 }
 
-/// Whether a step that names a place so says that the walker comes to it. What only tells another place apart, as in "the
-/// table with the lamp", has no place in the order.
+/// Whether a walker comes to a place with this relation. A place that only identifies another one, as in "the table
+/// with the lamp", has no position in the order.
 fn is_met(relation: Relation) -> bool {
     use Relation::{Along, At, In, Into, OutOf, Past, Through, To};
     matches!(relation, OutOf | Into | In | Through | Past | To | Along | At)
 }
 
-/// The first places that a text names, that the walker comes to, and that the building has. Swapping what it lacks says
-/// nothing.
+/// The first places that a text names, the walker comes to, and the building has. A place that the building lacks
+/// cannot be swapped meaningfully.
 fn places(guide: &Guide, building: &Building) -> Vec<Named> {
     let trial = Trial::new(guide, building);
     let mut places = Vec::new();

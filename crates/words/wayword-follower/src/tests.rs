@@ -77,7 +77,7 @@ const TO_KITCHEN: &str = "Walk down the hallway and turn right. Walk into the ki
 const TO_BEDROOM: &str = "Walk down the hallway and turn left. Walk into the bedroom and wait by the bed.";
 
 #[test]
-fn a_text_leads_where_it_says() {
+fn the_best_walk_ends_at_the_place_in_the_text() {
     for weights in [Weights::fitted(), &Weights::by_hand()] {
         assert_eq!(end_of(TO_KITCHEN, weights), "far east");
         assert_eq!(end_of(TO_BEDROOM, weights), "far west");
@@ -97,7 +97,7 @@ fn shares_add_up_to_one() {
 }
 
 #[test]
-fn one_wrong_turn_is_what_changing_it_gains() {
+fn changing_a_wrong_turn_gains_most() {
     let building = Building::of(&surveyed());
     let walk = [0, 1, 2, 5, 6];
     let gain = |text: &str| {
@@ -113,7 +113,7 @@ fn one_wrong_turn_is_what_changing_it_gains() {
 }
 
 #[test]
-fn places_the_wrong_way_round_are_what_swapping_them_gains() {
+fn swapping_misplaced_places_gains() {
     let building = Building::of(&surveyed());
     let walk = [0, 1, 2, 5, 6];
     let known = Known { building: &building, walk: &walk, heading_rad: 0.0 };
@@ -212,14 +212,14 @@ fn a_walker_gets_there_without_a_map() {
 }
 
 #[test]
-fn a_walker_where_no_way_leads_stops() {
+fn a_walker_without_a_way_out_stops() {
     let guide = Guide::read("Walk on.");
     let mut reader = Reader::new(&guide, OnwardWeights::fitted());
     assert_eq!(reader.decide(&Sighting::default()), Decision::Stop);
 }
 
 #[test]
-fn a_text_without_words_tells_no_step() {
+fn an_empty_text_has_no_step() {
     assert!(Guide::read("").is_empty() && Guide::read(" . ! ").is_empty());
     assert_eq!(Guide::read("Turn left, then turn right.").len(), 2);
 }

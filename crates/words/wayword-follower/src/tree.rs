@@ -1,4 +1,4 @@
-//! Walks that a text may mean, as a tree: walks that begin alike share their beginning.
+//! The walks that a text may mean, as a tree: walks with the same beginning share its nodes.
 
 use crate::building::{Building, wrapped};
 use std::collections::BTreeMap;
@@ -23,24 +23,24 @@ pub(crate) struct Node {
     pub(crate) turn_rad: f64,
     /// The length of that hop, metres.
     pub(crate) length_m: f64,
-    /// What other ways there were before that hop, and are here.
+    /// The other ways at the start of that hop, and the ways here.
     pub(crate) ways: Ways,
 }
 
-/// The ways out of a viewpoint, as a walker sees them that came there and goes on.
+/// The ways out of a viewpoint, as seen by a walker that arrived there and goes on.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Ways {
-    /// Whether one could go straight on from here.
+    /// Whether a way goes straight on from here.
     pub(crate) onward: bool,
     /// Whether a way leads off here to the left, and to the right.
     pub(crate) aside: [bool; 2],
-    /// How many ways before the hop here lay nearer to straight ahead than the one taken.
+    /// How many ways at the start of the hop here were nearer to straight ahead than the one taken.
     pub(crate) straighter: usize,
-    /// How many ways before the hop here lay on the side of the one taken and nearer to a right angle.
+    /// How many ways at the start of the hop here were on the side of the one taken and nearer to a right angle.
     pub(crate) squarer: usize,
 }
 
-/// Which walks are thought of.
+/// The set of walks that are considered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Prior {
     /// The shortest path to each viewpoint, up to a number of hops.
@@ -49,11 +49,11 @@ pub enum Prior {
     TwoPieces(usize),
 }
 
-/// How far a way onward may lie from straight ahead, radians.
+/// Largest angle from straight ahead of a way that goes straight on, radians.
 const ONWARD_RAD: f64 = 0.6;
-/// How far from straight ahead a way lies that leads off to a side, radians.
+/// Angles from straight ahead at which a way leads off to a side, radians.
 const ASIDE_RAD: std::ops::Range<f64> = 0.8..2.4;
-/// By how much a way has to lie better than another that it counts as better, radians.
+/// Least difference of angle for a way to count as better than another, radians.
 const BETTER_RAD: f64 = 0.2;
 
 impl Default for Prior {
@@ -63,11 +63,11 @@ impl Default for Prior {
     }
 }
 
-/// Most nodes of a tree. In a large building walks of two pieces are many; the shortest paths come first.
+/// Most nodes of a tree. A large building has very many walks of two pieces; the shortest paths come first.
 const MOST_NODES: usize = 20_000;
 
 impl Ways {
-    /// Notes the ways out of a viewpoint, by their turns (radians, positive right).
+    /// Records the ways out of a viewpoint, by their turns (radians, positive right).
     fn look(&mut self, turns: &[f64]) {
         self.onward = turns.iter().any(|rad| rad.abs() < ONWARD_RAD);
         self.aside = [-1.0, 1.0].map(|sign| turns.iter().any(|rad| ASIDE_RAD.contains(&(sign * rad))));
@@ -216,7 +216,7 @@ impl Tree {
         viewpoints
     }
 
-    /// The walk with these viewpoints.
+    /// The walk with exactly these viewpoints, if the tree has it.
     #[must_use]
     pub fn find(&self, viewpoints: &[usize]) -> Option<usize> {
         let is_it = |at: &usize| self.nodes[*at].hops + 1 == viewpoints.len() && self.viewpoints(*at) == viewpoints;

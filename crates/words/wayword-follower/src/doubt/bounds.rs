@@ -1,9 +1,9 @@
-//! From which gain on words are doubted.
+//! The gains from which words are doubted.
 
 use super::Source;
 use wayword_core::Grade;
 
-/// From which gains on words of one source are doubted, natural logs.
+/// The gains from which words of one source are doubted, natural logs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
     /// From here on they are uncertain.
@@ -17,7 +17,7 @@ pub struct Bound {
 pub struct Bounds([Bound; Source::ALL.len()]);
 
 impl Bounds {
-    /// The grade of words whose change gains so much; `None` where they are not doubted.
+    /// The grade of a doubt for a gain; `None` if the gain is too small for a doubt.
     #[must_use]
     pub fn grade(&self, source: Source, gain: f64) -> Option<Grade> {
         let bound = self.of(source);
@@ -30,7 +30,7 @@ impl Bounds {
         }
     }
 
-    /// Bounds by which all words are doubted whose change gains anything.
+    /// Bounds that doubt all words with any gain.
     #[cfg(test)]
     pub(crate) fn all() -> Self {
         Self(Source::ALL.map(|_| Bound { uncertain: 0.0, likely: 1.0 }))
@@ -44,8 +44,8 @@ impl Bounds {
 }
 
 impl Default for Bounds {
-    /// The bounds by which `wayword-measure doubts` finds the shares of people's own words in R2R's train split that
-    /// docs/CHECKS.md names.
+    /// Bounds that give the shares of doubted words in people's texts of R2R's train split in docs/CHECKS.md, measured
+    /// by `wayword-measure doubts`.
     fn default() -> Self {
         let bound = |source| {
             let (uncertain, likely) = match source {

@@ -1,7 +1,8 @@
-//! What a reader of a text should doubt: words that fit the known walk better if they are changed, and what would fit.
+//! Finds the words of a text that a reader should doubt, because the known walk fits better with other words, and
+//! suggests these.
 //!
-//! [`sites`] says for each change what it gains. [`doubts`] keeps those that gain enough, by [`Bounds`], and [`said`] has the
-//! doubts that checks and ambiguity raise. [`wayword_core::doubt::apart_in`] puts all of them together.
+//! [`sites`] computes the gain of each possible change. [`doubts`] selects those with enough gain, by [`Bounds`];
+//! [`said`] adds the doubts from checks and ambiguity. [`wayword_core::doubt::apart_in`] combines all of them.
 
 mod bounds;
 mod others;
@@ -23,10 +24,10 @@ use wayword_language::{
     rewording::{Spelt, in_capitals_of},
 };
 
-/// Most places of a text that are looked at. The work grows with their number.
+/// Most places of a text that are examined. The work grows with their number.
 const MOST_PLACES: usize = 14;
 
-/// What is changed of a text.
+/// The kind of change that led to a doubt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Source {
     /// A turn, to the other side.
@@ -95,19 +96,19 @@ impl Source {
     }
 }
 
-/// Words of a text that can be changed, and what the changes gain.
+/// Words of a text that can be changed, and the gains of the changes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Site {
-    /// What is changed.
+    /// The kind of change.
     pub source: Source,
     /// The byte range of the words.
     pub span: [usize; 2],
-    /// What may stand there instead, the most gainful first. There is at least one.
+    /// The replacements, the highest gain first. There is at least one.
     pub alternatives: Vec<Alternative>,
 }
 
 impl Site {
-    /// A site; `None` where nothing may stand there instead.
+    /// A site; `None` if there is no alternative.
     fn of(source: Source, span: [usize; 2], alternatives: Vec<Alternative>) -> Option<Self> {
         (!alternatives.is_empty()).then_some(Self { source, span, alternatives })
     }
@@ -125,15 +126,15 @@ impl Site {
         Doubt { span: self.span, grade, cause: Cause::Change, reason, alternatives }
     }
 
-    /// What the best alternative gains, natural logs; negative where all fit worse.
+    /// The gain of the best alternative, natural logs; negative if all fit worse.
     #[must_use]
     pub fn gain(&self) -> f64 {
         self.alternatives.iter().filter_map(|one| one.gain).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
-/// The words of a text that a reader should doubt: those that gain enough by a change, and those that a check found wrong or could not
-/// decide about, with what may stand in their place. They may overlap.
+/// The doubted words of a text: those with enough gain by a change, and those that a check found wrong or could not
+/// decide, with suggestions. They may overlap.
 #[must_use]
 pub fn doubts(
     text: &str,
@@ -147,7 +148,7 @@ pub fn doubts(
     for doubt in &mut doubts {
         let is_wrong = doubt.cause == Cause::Wrong;
         let motion = sites.iter().filter(|site| site.tells_motion() && is_within(doubt.span, site.span));
-        // A check names the side of a turn alone; "turn left" is what may be told otherwise.
+        // A check only marks the side of a turn; the suggestion replaces all of "turn left".
         if let Some(motion) = motion.min_by_key(|site| site.span[1] - site.span[0]).filter(|_| is_wrong) {
             doubt.span = motion.span;
         }
@@ -170,8 +171,8 @@ fn is_within(inner: [usize; 2], outer: [usize; 2]) -> bool {
     outer[0] <= inner[0] && inner[1] <= outer[1]
 }
 
-/// What a site offers in the place of words that a check doubts. Where a check found the way by a place wrong, any other way may be
-/// right.
+/// The suggestions of a site for words that a check doubts. If a check found the way by a place wrong, any other way
+/// may be right.
 fn offered(site: &Site, doubt: &Doubt) -> Option<Doubt> {
     let is_wrong = doubt.cause == Cause::Wrong;
     let is_name = matches!(site.source, Source::Place | Source::Unknown);
@@ -184,13 +185,13 @@ fn offered(site: &Site, doubt: &Doubt) -> Option<Doubt> {
     fits.then(|| site.doubt(doubt.grade))
 }
 
-/// Whether a text has too many steps for its changes to be looked at.
+/// Whether a text has too many steps to examine its changes.
 #[must_use]
 pub fn is_too_long(guide: &Guide) -> bool {
     guide.len() > MOST_STEPS
 }
 
-/// What single changes of a text gain for a walk; nothing where the text has too many steps.
+/// The gains of single changes of a text for a walk; empty if the text has too many steps.
 #[must_use]
 pub fn sites(text: &str, guide: &Guide, known: Known<'_>, weights: &Weights) -> Vec<Site> {
     if guide.is_empty() || is_too_long(guide) {
@@ -228,7 +229,7 @@ fn single(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, weights: &Weights)
     changes(guide, known.building, known.walk, known.heading_rad, weights).into_iter().filter_map(site).collect()
 }
 
-/// The two places that gain most the other way round: each may be named where the other is.
+/// The two places with the highest gain from swapping: each may be named where the other is.
 fn swapped(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, weights: &Weights) -> Vec<Site> {
     let swap = best_swap(guide, known.building, known.walk, known.heading_rad, weights);
     let site = |(gain, here, there)| {
@@ -239,7 +240,7 @@ fn swapped(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, weights: &Weights
     both.into_iter().flatten().filter_map(site).collect()
 }
 
-/// Whether a name means stairs: one neither goes into them, nor names anything else in their place.
+/// Whether a name means stairs, which are neither entered nor replaced.
 fn is_stairs(name: &str) -> bool {
     room_name(name) == Some("stairs")
 }

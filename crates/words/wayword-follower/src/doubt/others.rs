@@ -1,4 +1,4 @@
-//! Other places that would fit the walk better than the ones that a text names.
+//! Finds other places along the walk that would fit it better than the ones in the text.
 
 use super::{MOST_PLACES, Site, Source, best_first, is_stairs};
 use crate::{
@@ -15,12 +15,12 @@ use wayword_language::{
     rewording::{Spelt, in_capitals_of},
 };
 
-/// Names of rooms, and of things, that are tried for each place.
+/// Most names of rooms, and of things, that are tried for each place.
 const MOST_NAMES: usize = 20;
-/// The least salience of a thing that is named to readers.
+/// Least salience of a thing that is suggested to readers.
 const LEAST_SALIENCE: u8 = 2;
 
-/// What stands along the walk, held against each place that the text names.
+/// Tries the rooms and things along the walk in place of each place that the text names.
 pub(super) fn sites(spelt: &Spelt<'_>, guide: &Guide, known: Known<'_>, walk: &OneWalk<'_>) -> Vec<Site> {
     let names = along(known.building, known.walk);
     let trial = Trial::new(guide, known.building);
@@ -64,7 +64,7 @@ fn along(building: &Building, walk: &[usize]) -> Vec<Nearness> {
     room.take(MOST_NAMES).chain(thing.take(MOST_NAMES)).collect()
 }
 
-/// Whether a name is another one, of what the text names there: a room for a room.
+/// Whether a name can replace a mention: it means something else, and is a room for a room and a thing for a thing.
 fn may_be(mention: &Mention, name: &Nearness) -> bool {
     let is_alike = mention.meanings.iter().any(|what| what.is_room == name.is_room);
     let is_same = |what: &Nearness| {
@@ -74,8 +74,8 @@ fn may_be(mention: &Mention, name: &Nearness) -> bool {
     is_alike && !is_climbed && !mention.meanings.iter().any(is_same)
 }
 
-/// A name in the place of another, in its number, with its article and in its capitals. `told` is the old name with the article "a"
-/// or "an", where it has one.
+/// A replacement for a name, in its number, with its article and capitals. `told` is the range of the old name with its
+/// article "a" or "an", if it has one.
 fn instead(spelt: &Spelt<'_>, old: [usize; 2], told: [usize; 2], name: &str) -> String {
     let has_article = told != old;
     let name = match name {

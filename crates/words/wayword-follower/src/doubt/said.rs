@@ -1,10 +1,11 @@
-//! Doubts that checks raise, and that a text may mean several things.
+//! Makes doubts of the findings of checks, and of the ambiguity of a text.
 
 use crate::guide::Guide;
 use wayword_core::{Alternative, Ambiguity, Cause, Check, Doubt, Finding, Grade, Verdict};
 use wayword_language::{lexicon::is_room, reading::Reading, rewording::Spelt};
 
-/// The doubts of what checks found of words. How a text is written, and what is not understood of it, says nothing of its path.
+/// The doubts from the findings of checks. Findings about form, copying and unknown words are left out, because they do
+/// not concern the path.
 #[must_use]
 pub fn of_findings(findings: &[Finding]) -> Vec<Doubt> {
     let doubt = |finding: &Finding| {
@@ -20,7 +21,7 @@ pub fn of_findings(findings: &[Finding]) -> Vec<Doubt> {
     findings.iter().filter_map(doubt).collect()
 }
 
-/// The doubts of a text that may mean several places, or several objects: about its end, and about the object of its task.
+/// The doubts about a text that may mean several places or objects: at its end, and at the object of its task.
 #[must_use]
 pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Ambiguity) -> Vec<Doubt> {
     let doubt = |span, reason, alternatives| Doubt {
@@ -47,7 +48,7 @@ pub fn of_ambiguity(text: &str, guide: &Guide, reading: &Reading, ambiguity: &Am
     doubts
 }
 
-/// The words that say where the walk ends: the last place of the step at which it stops, or else that step.
+/// The words for the end of the walk: the last place of the step that stops, or else that step.
 fn end(spelt: &Spelt<'_>, guide: &Guide) -> Option<[usize; 2]> {
     let stop = guide.steps.iter().rev().find(|told| told.step.stops).or(guide.steps.last())?;
     stop.mentions.iter().rev().find_map(|mention| mention.span).or_else(|| spelt.step(stop.step.span))

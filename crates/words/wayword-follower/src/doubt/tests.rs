@@ -33,7 +33,7 @@ fn a_wrong_turn_is_doubted_and_the_other_side_is_offered_in_the_text_s_own_words
 }
 
 #[test]
-fn words_that_a_check_found_wrong_may_be_left_out_and_those_it_cannot_decide_about_get_names() {
+fn failed_words_may_be_left_out_and_unverified_ones_get_names() {
     let building = Building::of(&surveyed());
     let known = Known { building: &building, walk: &WALK, heading_rad: 0.0 };
     let text = "Walk down the hallway. Walk down the hallway and turn right. Walk past the bed and wait by the oven.";
@@ -61,7 +61,7 @@ fn a_room_that_is_not_there_is_doubted_and_the_one_that_is_there_is_offered() {
 }
 
 #[test]
-fn findings_are_doubts_but_not_those_about_form_and_what_is_not_understood() {
+fn of_findings_ignores_form_and_unknown_words() {
     let finding = |check, verdict| Finding { check, verdict, reason: "r".into(), span: Some([0, 4]) };
     let findings = [
         finding(Check::Form, Verdict::Fail),
@@ -75,7 +75,7 @@ fn findings_are_doubts_but_not_those_about_form_and_what_is_not_understood() {
 }
 
 #[test]
-fn an_ambiguous_end_is_doubted_with_what_tells_it_apart() {
+fn of_ambiguity_suggests_a_name_that_identifies_the_end() {
     let text = "Walk on and stop at the door. Then clean the lamp.";
     let reading = wayword_language::reading::read(text, &std::collections::BTreeSet::new());
     let guide = Guide::of(text, &reading);
@@ -101,9 +101,9 @@ fn a_turn_that_a_check_found_wrong_is_doubted_as_a_whole_and_the_other_side_come
     assert_eq!(doubts[0].cause, Cause::Wrong);
 }
 
-/// Texts of words that mean something to the follower, and of others, with every change told, however little it gains.
+/// Texts of words that the follower knows and of others, with a doubt for every change of any gain.
 #[test]
-fn whatever_the_text_doubts_are_apart_in_the_text_and_few() {
+fn doubts_never_overlap_and_are_few() {
     const WORDS: [&str; 28] = [
         "walk", "turn", "left", "right", "up", "down", "the", "a", "an", "stairs", "kitchen", "bedroom", "oven", "bed",
         "plant", "past", "into", "and", "then", ".", ",", "stop", "on your", "Türe", "門", "🪑", "LEFT", "exit",

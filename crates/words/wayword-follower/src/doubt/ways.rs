@@ -1,4 +1,4 @@
-//! How the walk goes by a place, told in another way: "walk to the sofa" for "walk past the sofa".
+//! Finds better prepositions for how the walk passes a place: "walk to the sofa" for "walk past the sofa".
 
 use super::{MOST_PLACES, Site, Source, best_first, is_stairs};
 use crate::{
@@ -11,7 +11,7 @@ use wayword_language::{
     rewording::{Spelt, in_capitals_of},
 };
 
-/// How a walk goes by a place, each in one preposition.
+/// The relations of a walk to a place, each as one preposition.
 const WAYS: [(Relation, &str); 6] = [
     (Relation::To, "to"),
     (Relation::Past, "past"),
@@ -47,7 +47,7 @@ pub(super) fn sites(spelt: &Spelt<'_>, guide: &Guide, walk: &OneWalk<'_>) -> Vec
     sites
 }
 
-/// Whether one goes so by such a place: one does not go into a chair.
+/// Whether a relation is possible for a place: a walker does not go into a chair.
 fn is_way_by(mention: &Mention, relation: Relation) -> bool {
     let is_room = mention.meanings.first().is_some_and(|what| what.is_room && !is_stairs(&what.name));
     is_room || matches!(relation, Relation::To | Relation::Past)

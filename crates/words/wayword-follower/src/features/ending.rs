@@ -1,4 +1,4 @@
-//! The end of a walk: what the whole text names against the whole walk.
+//! Features of the end of a walk: everything that the text names compared with the whole walk.
 
 use super::{
     Feature, class,
@@ -13,13 +13,13 @@ use crate::{
     tree::Tree,
 };
 
-/// A turn that people would tell, radians.
+/// Turns of at least this angle are usually described by people, radians.
 const TOLD_TURN_RAD: f64 = 0.8;
 
 /// Finds the features of a walk that ends at a node.
 pub(crate) fn ending(trial: &Trial<'_>, tree: &Tree, end: usize, found: &mut Vec<Feature>) {
     if trial.guide.is_empty() {
-        // Nothing is told: what is left is how far people's walks lead.
+        // The text has no step, so only the usual length of people's walks counts.
         let length_m: f64 = tree.back(end).map(|node| tree.nodes[node].length_m).sum();
         found.push(UNTOLD_HOPS.at([(tree.nodes[end].hops.min(WALK_HOPS - 1), WALK_HOPS)]));
         found.push(UNTOLD_LENGTH.at([(class(length_m, &[2.0, 4.0, 6.0, 8.0, 10.0, 13.0, 16.0]), 8)]));
@@ -48,7 +48,7 @@ pub(crate) fn ending(trial: &Trial<'_>, tree: &Tree, end: usize, found: &mut Vec
     found.push(TURNS_TOLD.at([(told, 7), (real.min(6), 7)]));
 }
 
-/// The rooms that the walk passes and the text does not name, and the room where it ends.
+/// The rooms that the walk passes without a mention in the text, and the room where it ends.
 fn rooms(trial: &Trial<'_>, is_goal: (usize, usize), tree: &Tree, end: usize, found: &mut Vec<Feature>) {
     let room = |node: usize| trial.building.viewpoints[tree.nodes[node].viewpoint].room.as_deref();
     let tells = |node: usize| trial.tells_room[tree.nodes[node].viewpoint];

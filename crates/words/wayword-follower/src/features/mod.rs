@@ -1,7 +1,7 @@
-//! What speaks for a step over a stretch of a walk, or for the end of a walk: a list of features that hold. Each has a
-//! weight.
+//! Computes the features of a step over a stretch of a walk, and of the end of a walk. A feature is a yes-or-no
+//! statement such as "a step with a left turn bends 75 to 90 degrees to the left"; each has a weight.
 //!
-//! Left and right are mirrored: a right turn counts like a left turn in the mirror, so both share their weights.
+//! Left and right share their weights: a right turn counts like a left turn in the mirror.
 
 mod ending;
 mod places;

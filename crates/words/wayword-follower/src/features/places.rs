@@ -1,4 +1,4 @@
-//! The rooms and objects that a step names, along its stretch.
+//! Features of the rooms and objects that a step names, along its stretch.
 
 use super::{
     Feature, Stretch, class,
@@ -15,7 +15,7 @@ use crate::{
 };
 use wayword_core::Side;
 
-/// How far away a place may be for the step to lead towards it, metres: at least, and at most.
+/// Distance of a place, from and to, at which a step can lead towards it, metres.
 const TOWARDS_M: std::ops::Range<f64> = 1.0..14.0;
 
 pub(super) fn places(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
@@ -29,7 +29,7 @@ pub(super) fn places(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, foun
     }
 }
 
-/// How near the stretch begins, comes and ends.
+/// The distance class of the place at the begin of the stretch, at its nearest point, and at its end.
 fn near(place: &Found<'_>, stretch: &Stretch<'_>, is_last: bool, found: &mut Vec<Feature>) {
     let class = |node: usize| place.near.class[stretch.tree.nodes[node].viewpoint];
     let (first, last) = (class(stretch.first()), class(stretch.last()));
@@ -74,7 +74,7 @@ fn towards(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, found: &
     }
 }
 
-/// On which side of the walker the place is where it is nearest, where the text tells a side.
+/// On which side of the walker the place is where it is nearest, if the text gives a side.
 fn side(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
     let sign = match place.mention.side {
         Some(Side::Left) => -1.0,
@@ -110,7 +110,7 @@ fn ahead(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, found: &mu
     }
 }
 
-/// Whether the stretch ends where the place is nearest: one could go nearer from there, or has been nearer.
+/// Whether the stretch ends where the place is nearest: the walk could go nearer from there, or was nearer before.
 fn nearest(trial: &Trial<'_>, place: &Found<'_>, stretch: &Stretch<'_>, is_last: bool, found: &mut Vec<Feature>) {
     let class = |viewpoint: usize| place.near.class[viewpoint];
     let of_node = |node: &usize| stretch.tree.nodes[*node].viewpoint;

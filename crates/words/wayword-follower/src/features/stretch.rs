@@ -1,4 +1,4 @@
-//! A step over a stretch of a walk.
+//! Features of a step over a stretch of a walk: its length, turns, stairs, doors and marking words.
 
 use super::{
     Feature, angle, class, places,
@@ -20,7 +20,7 @@ use wayword_language::reading::steps::{Relation, Stairs};
 
 /// Most hops of a step.
 pub(crate) const MOST_HOPS: usize = 8;
-/// A turn that is no bend of a corridor, radians.
+/// Turns of at least this angle are more than a bend of a corridor, radians.
 const CLEAR_TURN_RAD: f64 = 0.7;
 
 /// The nodes of a walk that a step takes: from where it begins to where it ends.
@@ -62,8 +62,8 @@ impl<'a> Stretch<'a> {
         self.nodes()[1..].iter().map(|at| self.tree.nodes[*at].turn_rad)
     }
 
-    /// Whether it begins where the walk does. Then its first turn is the walk's opening turn, which people often do not
-    /// tell.
+    /// Whether it begins where the walk does. Its first turn is then the walk's opening turn, which people often leave
+    /// out.
     fn opens(&self) -> bool {
         self.first() == 0 && self.hops > 0
     }
@@ -131,7 +131,7 @@ fn length(told: &Told, is_last: bool, stretch: &Stretch<'_>, found: &mut Vec<Fea
     found.push(LENGTH.at([kind, (class(length_m, &[0.1, 1.5, 3.0, 5.0, 7.0, 10.0, 14.0]), 8)]));
 }
 
-/// The step among the others of its text, and the ways that it does not take.
+/// The context of the step: the other steps of its text, and the ways that it does not take.
 fn around(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
     let steps = &trial.guide.steps;
     let kind = (steps[step].kind as usize, Kind::COUNT);
@@ -160,7 +160,7 @@ fn around(trial: &Trial<'_>, step: usize, stretch: &Stretch<'_>, found: &mut Vec
         let straighter = stretch.nodes()[skip..].iter().filter(|node| ways(node).straighter > 0).count();
         found.push(STRAIGHTER.at([kind, (straighter.min(2), 3)]));
     }
-    // "Walk on and turn left": ways to the left on the way there were not meant.
+    // "Walk on and turn left": the ways to the left that are passed before were not meant.
     let side = match next.and_then(|next| next.step.turn) {
         Some(Side::Left) => Some(0),
         Some(Side::Right) => Some(1),
@@ -178,7 +178,7 @@ fn told_turn(told: &Told) -> bool {
     told.step.turn.is_some()
 }
 
-/// The storey where it ends, where the text tells one.
+/// The storey where it ends, if the text gives one.
 fn level(trial: &Trial<'_>, told: &Told, [start, last]: [&Viewpoint; 2], found: &mut Vec<Feature>) {
     let which = match (told.step.floor, told.step.storey) {
         (Some(floor), _) => floor.number.map_or(3, |number| (number as usize).clamp(1, 4) - 1),
@@ -198,7 +198,7 @@ fn level(trial: &Trial<'_>, told: &Told, [start, last]: [&Viewpoint; 2], found: 
 fn turns(told: &Told, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
     if stretch.hops > 0 {
         let kind = (told.kind as usize, Kind::COUNT);
-        // Turned so that a turn to the side that the text tells is positive; without a side, only the size counts.
+        // Mirrored so that a turn to the side in the text is positive; without a side, only the size counts.
         let told_rad = |rad: f64| match told.step.turn {
             Some(Side::Left) => -rad,
             Some(Side::Right) => rad,
@@ -275,7 +275,7 @@ fn rooms(
     found.push(BORDER.at([door, (usize::from(is_last), 2), (border.min(2), 3)]));
 }
 
-/// Whether one could go straight on from the end.
+/// Whether the walk could go straight on from the end.
 fn onward(told: &Told, stretch: &Stretch<'_>, found: &mut Vec<Feature>) {
     let goes_on = usize::from(stretch.tree.nodes[stretch.last()].ways.onward);
     let kind = (told.kind as usize, Kind::COUNT);

@@ -1,4 +1,5 @@
-//! The tables of features: each holds a run of numbers.
+//! The tables of features. Each table has a consecutive range of feature numbers, one for each combination of its
+//! dimensions.
 
 use crate::{guide::Kind, near::CLASSES};
 use wayword_language::reading::steps::Relation;
@@ -12,7 +13,8 @@ pub(crate) struct Table {
     pub(crate) from: usize,
     /// Number of its features.
     pub(crate) size: usize,
-    /// Whether it tells fine things apart, for which there are few examples: a fit holds its weights closer to 0.
+    /// Whether it distinguishes so finely that there are few examples for each feature: a fit keeps its weights closer
+    /// to their start values.
     pub(crate) is_fine: bool,
 }
 
@@ -56,11 +58,11 @@ pub(crate) const GROUPS: usize = 6;
 pub(crate) const HOPS_CLASSES: usize = 8;
 /// Classes of angles.
 pub(crate) const ANGLES: usize = 24;
-/// Classes of storeys that a text tells: 1, 2, 3, any above or the top one, upstairs, downstairs.
+/// Classes of storeys that a text can give: 1, 2, 3, any above or the top one, upstairs, downstairs.
 pub(crate) const LEVELS: usize = 6;
 /// Classes of hops of a whole walk.
 pub(crate) const WALK_HOPS: usize = 12;
-/// Number of marking words; a test holds it against the list.
+/// Number of marking words; a test compares it with the list.
 pub(crate) const MARKS: usize = 90;
 
 tables! {
@@ -93,7 +95,7 @@ tables! {
     BORDER coarse 4 * 2 * 3;
     STAIRS_AT coarse 3 * 2 * 2 * 4;
     SIDE_OF_TURN coarse 4 * 12;
-    // What it names.
+    // The places that it names.
     THING fine RELATIONS * 3 * 3 * CLASSES;
     THING_AT_END fine RELATIONS * CLASSES;
     ROOM fine RELATIONS * 3 * CLASSES;
@@ -118,7 +120,7 @@ tables! {
     UNNAMED_PASSED coarse 2 * 5;
     UNNAMED_END coarse 2 * 2 * 3;
     TURNS_TOLD coarse 7 * 7;
-    // The walk of a text that tells nothing.
+    // The walk of a text without any step.
     UNTOLD_HOPS coarse WALK_HOPS;
     UNTOLD_LENGTH coarse 8;
 }

@@ -1,10 +1,10 @@
-//! What a walker knows of a building: a map of where it was, in its own frame.
+//! A walker's own map of a building: the viewpoints where it was and their neighbours, in the frame of its start.
 
 use crate::building::{Building, Thing, Viewpoint};
 use wayword_core::{DVec3, Heading};
 use wayword_language::lexicon::normal;
 
-/// What a walker gets at a viewpoint. Directions are relative to its body.
+/// The walker's observation at a viewpoint. Directions are relative to its body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sighting {
     /// The ways out.
@@ -50,16 +50,16 @@ impl Hop {
 /// Two viewpoints that lie closer than this are one, metres. The walker adds up its hops, so the same place comes out a
 /// little different each time.
 const SAME_PLACE_M: f64 = 0.05;
-/// How far away an object is taken to be that is seen in the direction of a hop, metres at most.
+/// Assumed distance of an object that is seen in the direction of a hop, metres at most.
 const THING_M: f64 = 1.5;
 
 /// A map of where a walker was.
 #[derive(Debug, Default)]
 pub(super) struct Map {
     pub(super) building: Building,
-    /// Where the walker stands.
+    /// The walker's viewpoint.
     pub(super) here: usize,
-    /// Which way it looks, radians clockwise; 0 is the way it looked first.
+    /// The walker's direction, radians clockwise; 0 is its first direction.
     pub(super) heading_rad: f64,
     /// For each viewpoint, where each hop out of it leads, in the order of its sighting.
     pub(super) ways: Vec<Vec<usize>>,
@@ -80,7 +80,7 @@ impl Map {
         self.here = to;
     }
 
-    /// Notes what is seen here.
+    /// Adds the observation at the walker's viewpoint to the map.
     pub(super) fn look(&mut self, seen: &Sighting) {
         let here_m = self.building.viewpoints[self.here].position;
         let offsets: Vec<DVec3> = seen.hops.iter().map(|hop| self.offset(hop)).collect();
@@ -90,7 +90,7 @@ impl Map {
             if offsets.len() == self.ways[self.here].len() && ends.zip(&offsets).all(is_close) {
                 return;
             }
-            // Another viewpoint at the same place: some graphs have two.
+            // This is another viewpoint at the same place: some graphs have two.
             self.here = self.add(here_m);
         }
         let ways: Vec<usize> = offsets.iter().map(|off| self.place(here_m + *off)).collect();
@@ -110,7 +110,7 @@ impl Map {
         self.building.changed();
     }
 
-    /// Where a hop leads, from here.
+    /// The offset of a hop from the walker's viewpoint.
     fn offset(&self, hop: &Hop) -> DVec3 {
         let rad = self.heading_rad + hop.turn_rad;
         let flat_m = hop.length_m * libm::cos(hop.elevation_rad);

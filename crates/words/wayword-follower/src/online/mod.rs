@@ -1,4 +1,5 @@
-//! A follower that walks: it knows the viewpoints where it was and their neighbours, and decides at each where to go.
+//! A follower that walks without a map: it knows only the viewpoints where it was and their neighbours, and decides at
+//! each where to go.
 
 mod map;
 mod onward;

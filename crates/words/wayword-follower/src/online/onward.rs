@@ -1,5 +1,5 @@
-//! How well the beginning of an instruction fits a walk that ends at a viewpoint that was not visited: the last step begun
-//! there goes on.
+//! Scores going on to an unvisited viewpoint: how well the beginning of an instruction fits a walk to there, with the
+//! last begun step still in progress.
 
 use crate::{
     features::{Feature, MOST_HOPS, Stretch, stretch, tables},
@@ -14,13 +14,13 @@ use std::sync::LazyLock;
 /// The weights of a walker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OnwardWeights {
-    /// Those of steps that were done, and of a walk's end.
+    /// The weights of completed steps, and of a walk's end.
     pub done: Weights,
-    /// Those of the step that goes on.
+    /// The weights of the step in progress.
     pub going: Weights,
-    /// What speaks for going on, by the number of steps after that one.
+    /// Weights of going on, by the number of steps after the one in progress.
     pub left: [f64; LEFT],
-    /// What speaks for stopping at a viewpoint, and for going on to one, by how many hops away it is.
+    /// Weights of stopping at a viewpoint, and of going on to one, by how many hops away it is.
     pub away: [[f64; AWAY]; 2],
 }
 
@@ -33,7 +33,7 @@ static FITTED: LazyLock<OnwardWeights> =
     LazyLock::new(|| OnwardWeights::parse(include_str!("fitted.json")).unwrap_or_else(|_| OnwardWeights::by_hand()));
 
 impl OnwardWeights {
-    /// The weights that the program has: fitted to people's texts, as their file says.
+    /// The weights that the program uses: fitted to people's texts, as documented in their file.
     #[must_use]
     pub fn fitted() -> &'static Self {
         &FITTED
@@ -45,12 +45,12 @@ impl OnwardWeights {
         Self { done: Weights::by_hand(), going: Weights::by_hand(), left: [0.0; LEFT], away: [[0.0; AWAY]; 2] }
     }
 
-    /// All weights in one list: those of steps that were done, those of the step that goes on, and the rest.
+    /// All weights in one list: of completed steps, of the step in progress, and the rest.
     pub(super) fn values(&self) -> Vec<f64> {
         [self.done.values(), self.going.values(), &self.left, self.away.as_flattened()].concat()
     }
 
-    /// The weights of such a list.
+    /// The weights from a list of that form.
     pub(super) fn from_values(values: &[f64]) -> Self {
         let part = |number: usize| Weights::from_values(&values[number * tables::COUNT..(number + 1) * tables::COUNT]);
         let rest = &values[2 * tables::COUNT..];
@@ -102,12 +102,12 @@ impl OnwardLearner {
 pub struct Onward {
     /// For each node: the log of the sum over steps and stretches.
     scores: Vec<f64>,
-    /// For each node, what it is the sum of: step, hops, value.
+    /// For each node, the terms of its sum: step, hops, value.
     parts: Vec<Vec<(usize, usize, f64)>>,
 }
 
 impl Onward {
-    /// Fits the text to going on to the nodes whose viewpoints were not visited.
+    /// Scores going on to each node with an unvisited viewpoint.
     #[must_use]
     pub fn new(trial: &Trial<'_>, tree: &Tree, fit: &Fit, weights: &OnwardWeights) -> Self {
         let steps = trial.guide.len();
@@ -145,7 +145,7 @@ fn left(steps: usize, step: usize) -> usize {
     (steps - step - 1).min(LEFT - 1)
 }
 
-/// The slope of the loss of decisions, by weight.
+/// The gradient of the loss over decisions.
 #[derive(Debug, Clone)]
 pub struct OnwardSlope {
     pub(crate) done: Vec<f64>,
@@ -166,7 +166,7 @@ impl Default for OnwardSlope {
 }
 
 impl OnwardSlope {
-    /// Adds a decision: the shares of stopping at each node and of going on to each, less 1 for what was right.
+    /// Adds a decision: the share of stopping at each node and of going on to each, less 1 for the right one.
     pub(crate) fn add(
         &mut self,
         trial: &Trial<'_>,

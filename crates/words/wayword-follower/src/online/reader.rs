@@ -1,4 +1,4 @@
-//! The walker's decisions.
+//! The walker: it looks, scores all options that it knows, and decides where to go or to stop.
 
 use super::{
     map::{Map, Sighting},
@@ -11,7 +11,7 @@ use crate::{
     tree::Tree,
 };
 
-/// What a walker does at a viewpoint.
+/// A walker's decision at a viewpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Decision {
     /// Takes a hop of the sighting, by its number.
@@ -20,7 +20,7 @@ pub enum Decision {
     Stop,
 }
 
-/// A walker that reads.
+/// A walker that follows an instruction.
 #[derive(Debug)]
 pub struct Reader<'a> {
     guide: &'a Guide,
@@ -29,25 +29,25 @@ pub struct Reader<'a> {
     hops: usize,
 }
 
-/// Most hops of a walker. Then it stops where it stands.
+/// Most hops of a walker before it stops.
 const MOST_STEPS: usize = 24;
-/// Most hops from the start of the walks that it thinks of.
+/// Most hops of the walks that it considers.
 const MOST_HOPS: usize = 10;
-/// What speaks against each hop to an option besides the fitted weights. They are fitted to get to the goal at all; going
-/// back and forth costs, too.
+/// Deduction for each hop to an option, in addition to the fitted weights. These were fitted to reach the goal at all;
+/// going back and forth has a cost too.
 const CAUTION: f64 = 0.3;
 
-/// What a walker could do next.
+/// A walker's options at its viewpoint.
 struct Options {
     /// The walks from the start.
     tree: Tree,
-    /// For each walk, the class of hops from where the walker stands to its end.
+    /// For each walk, the class of hops from the walker's viewpoint to its end.
     away: Vec<usize>,
     /// For each walk, the first viewpoint on the way from there to its end; the walker's own where it ends there.
     next: Vec<usize>,
     fit: Fit,
     onward: Onward,
-    /// For each walk, how good it is to stop there, and to go on to it.
+    /// For each walk, the score of stopping at its end, and of going on to it.
     stop: Vec<f64>,
     go: Vec<f64>,
 }
@@ -86,8 +86,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The viewpoint to go to next: the one behind which most of what the text may mean lies; the walker's own where it
-    /// should stop.
+    /// The viewpoint to go to next: the one behind which most of the probability lies; the walker's own if it should
+    /// stop.
     fn next(&self) -> usize {
         let options = self.options(&Trial::seen(self.guide, &self.map.building));
         let cost = |walk: usize| CAUTION * options.away[walk] as f64;
@@ -123,8 +123,8 @@ impl<'a> Reader<'a> {
         Options { tree, away, next, fit, onward, stop, go }
     }
 
-    /// Adds to a slope what would have been right here: to go to the end of the shortest way to the goal that is known,
-    /// or to stop at the goal. The way is given by its hops, each by its number at its viewpoint.
+    /// Adds the right decision at this viewpoint to a gradient: to go to the last known viewpoint of the shortest way
+    /// to the goal, or to stop at the goal. The way is given by its hops, each by its number at its viewpoint.
     pub fn learn(&self, way: impl IntoIterator<Item = usize>, slope: &mut OnwardSlope) {
         let mut right = self.map.here;
         for hop in way {

@@ -1,4 +1,5 @@
-//! Weights written by hand: what the words mean, as smooth rules. They are the measure of what a fit adds.
+//! Weights written by hand from the meaning of the words, as smooth rules. They are the baseline that shows how much a
+//! fit adds.
 
 mod places;
 
@@ -15,8 +16,7 @@ use crate::{
 /// Sets a weight of a table, by its places in each dimension.
 type Set<'a> = dyn FnMut(&Table, &[(usize, usize)], f64) + 'a;
 
-/// Hops of a step of each kind: how a step without any goes, how many hops it takes at most without loss, and what each
-/// hop more loses.
+/// For each kind of step: the weight of zero hops, the number of hops that is free, and the loss for each further hop.
 const OF_HOPS: [(f64, usize, f64); Kind::COUNT] = [
     (-2.5, 1, 1.0),
     (-2.0, 1, 1.0),
@@ -31,9 +31,9 @@ const OF_HOPS: [(f64, usize, f64); Kind::COUNT] = [
     (-2.0, 6, 0.0),
     (0.0, 0, 0.7),
 ];
-/// How a climb goes with what the stretch gains, from 3 m against it to 3 m along it.
+/// Weights of a described climb by the rise of the stretch, from 3 m against it to 3 m along it.
 const OF_RISE: [f64; 11] = [-4.0, -4.0, -4.0, -3.5, -3.0, -2.0, 0.5, 1.5, 2.0, 2.5, 2.5];
-/// How any other step goes with a rise or fall.
+/// Weights of any other step by the rise of the stretch.
 const OF_FLAT: [f64; 11] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.3, -0.3, -0.8, -1.2, -1.5, -2.0];
 
 pub(super) fn weights() -> Weights {
@@ -60,7 +60,7 @@ fn length(set: &mut Set<'_>) {
         }
     }
     for hops in 0..HOPS_CLASSES {
-        // Where a step says to stop, most of the way is gone.
+        // A step that ends the walk comes after most of the way.
         let far = -0.2 * hops as f64;
         for (is_last, turns) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             set(&STOPS, &[(is_last, 2), (turns, 2), (hops, HOPS_CLASSES)], far);
@@ -82,12 +82,12 @@ fn length(set: &mut Set<'_>) {
         set(&LENGTH, &[(kind, Kind::COUNT), (class, 8)], -0.2 * (length_m - free_m).max(0.0));
     }
     for hops in 0..WALK_HOPS {
-        // Instructions are for walks of some length: of a text that tells nothing, the middle of what there is.
+        // Instructions describe walks of some length: without any step, the middle of the usual lengths is likeliest.
         set(&UNTOLD_HOPS, &[(hops, WALK_HOPS)], -0.3 * (hops as f64 - 5.0).abs());
     }
 }
 
-/// How likely it is that a step of a kind makes such a turn, degrees; positive is the side that the text tells.
+/// The weight of a turn by this angle for a step of a kind, degrees; positive is the side in the text.
 fn of_turn(kind: usize, deg: f64) -> f64 {
     let near = |middle: f64, width: f64, else_so: f64| {
         let off = (deg - middle).abs();
@@ -99,7 +99,7 @@ fn of_turn(kind: usize, deg: f64) -> f64 {
         1 => near(45.0, 40.0, 0.05) + 1.2,
         2 => near(180.0, 70.0, 0.05) + 1.2,
         6 => near(0.0, 45.0, 0.08),
-        // A text that tells no way may mean any.
+        // A text that describes no way allows any turn.
         10 => 0.0,
         _ => near(0.0, 55.0, 0.2),
     }
@@ -110,7 +110,8 @@ fn turns(set: &mut Set<'_>) {
         let goes = of_turn(kind, middle_deg(at, ANGLES));
         let place = [(kind, Kind::COUNT), (at, ANGLES)];
         let tells_turn = kind <= 2;
-        // Nobody tells which way the walker looks first; a turn told there may be that turn or the next.
+        // Texts leave out in which direction the walker looks first, so a turn in the first step may be the opening
+        // turn or the next.
         set(&OPENING_TURN, &place, if tells_turn { 0.6 * goes } else { 0.1 * goes });
         set(&TURN_AFTER_OPENING, &place, if tells_turn { 0.3 * goes } else { 0.7 * goes });
         set(&FIRST_TURN, &place, 0.3 * goes);
@@ -136,7 +137,7 @@ fn turns(set: &mut Set<'_>) {
         set(&TURNS_TOLD, &[(told, 7), (real, 7)], if untold > 0.0 { -0.2 * untold } else { 0.2 * untold });
     }
     for at in 0..12 {
-        // The way bends to the side that the text tells.
+        // The way bends to the side in the text.
         let goes = libm::sin(middle_deg(at, 12).to_radians());
         for (group, strength) in [0.8, 0.4, 0.0, 0.3].into_iter().enumerate() {
             set(&SIDE_OF_TURN, &[(group, 4), (at, 12)], strength * goes);
@@ -149,7 +150,7 @@ fn middle_deg(at: usize, classes: usize) -> f64 {
     360.0 * (at as f64 + 0.5) / classes as f64 - 180.0
 }
 
-/// What the ways that a walk does not take say: a plain way is taken unless the text tells another.
+/// Weights of the ways that a walk does not take: an obvious way is taken unless the text describes another.
 fn ways(set: &mut Set<'_>) {
     for kind in 0..Kind::COUNT {
         let tells_turn = kind <= 2;
@@ -163,17 +164,17 @@ fn ways(set: &mut Set<'_>) {
             }
         }
         set(&SKIPPED, &[(kind, Kind::COUNT), (0, 3), (1, 3)], 0.2);
-        // "To the end of the hallway": from there one cannot go straight on.
+        // "To the end of the hallway": no way goes straight on from there.
         set(&ONWARD, &[(kind, Kind::COUNT), (1, 2), (0, 2)], 0.5);
     }
-    // From room to room, for steps that have nothing to do with doors, lead from one room to another, name a door, and
+    // Number of changes of room, for steps that do not mention doors, lead from one room to another, name a door, and
     // lead through it.
     let of_door = [[0.1, -0.2, -0.5, -0.8], [-0.4, 0.3, 0.0, -0.3], [0.0, 0.0, -0.2, -0.4], [-0.4, 0.3, 0.1, -0.2]];
     for (door, row) in of_door.into_iter().enumerate() {
         for (crossings, goes) in row.into_iter().enumerate() {
             set(&CROSSINGS, &[(door, 4), (crossings, 4)], goes);
         }
-        // Who stops at a door, or behind one, has another room beside him.
+        // A walker who stops at a door, or behind one, has another room next to it.
         let beside = if door == 0 { -0.1 } else { 0.2 };
         for (border, sign) in [-1.0, 1.0, 1.0].into_iter().enumerate() {
             set(&BORDER, &[(door, 4), (1, 2), (border, 3)], sign * beside);

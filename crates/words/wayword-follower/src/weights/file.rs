@@ -1,4 +1,4 @@
-//! The file of weights: JSON, with a list of numbers for each table of features.
+//! Reads and writes the file of weights: JSON, with a list of numbers for each table of features.
 
 use super::Weights;
 use crate::{
@@ -31,7 +31,7 @@ pub enum WeightsError {
 
 #[derive(Serialize, Deserialize)]
 struct File {
-    /// What the weights were fitted to.
+    /// The data that the weights were fitted to.
     origin: String,
     /// The command that fits them.
     command: String,
@@ -40,10 +40,10 @@ struct File {
     /// For a walker: the weights of a step that goes on.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     going: BTreeMap<String, Vec<f64>>,
-    /// For a walker: what speaks for going on, by the number of steps after that one.
+    /// For a walker: weights of going on, by the number of steps after that one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     left: Vec<f64>,
-    /// For a walker: what speaks for stopping at a viewpoint, and for going on to one, by how many hops away it is.
+    /// For a walker: weights of stopping at a viewpoint, and of going on to one, by how many hops away it is.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     away: Vec<f64>,
 }
@@ -57,7 +57,7 @@ impl Weights {
         of_tables(&serde_json::from_str::<File>(text)?.tables)
     }
 
-    /// The weights as a file, rounded to thousandths. `origin` says what they were fitted to, `command` how.
+    /// The weights as a file, rounded to thousandths. `origin` names the data of the fit, `command` how it was run.
     #[must_use]
     pub fn to_json(&self, origin: &str, command: &str) -> String {
         let (origin, command) = (origin.into(), command.into());
@@ -83,7 +83,7 @@ impl OnwardWeights {
         Ok(Self { done: of_tables(&file.tables)?, going: of_tables(&file.going)?, left, away })
     }
 
-    /// The weights as a file, rounded to thousandths. `origin` says what they were fitted to, `command` how.
+    /// The weights as a file, rounded to thousandths. `origin` names the data of the fit, `command` how it was run.
     #[must_use]
     pub fn to_json(&self, origin: &str, command: &str) -> String {
         let (tables, going) = (to_tables(&self.done), to_tables(&self.going));

@@ -7,7 +7,7 @@ use crate::features::{Feature, tables};
 pub use file::WeightsError;
 use std::sync::LazyLock;
 
-/// What each feature speaks for or against a walk, in natural logs.
+/// The weight of each feature for or against a walk, in natural logs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weights(Vec<f64>);
 
@@ -15,13 +15,13 @@ static FITTED: LazyLock<Weights> =
     LazyLock::new(|| Weights::parse(include_str!("fitted.json")).unwrap_or_else(|_| Weights::by_hand()));
 
 impl Weights {
-    /// The weights that the program has: fitted to people's texts, as their file says.
+    /// The weights that the program uses: fitted to people's texts, as documented in their file.
     #[must_use]
     pub fn fitted() -> &'static Self {
         &FITTED
     }
 
-    /// Weights written by hand: what the words mean, in numbers.
+    /// Weights written by hand from the meaning of the words.
     #[must_use]
     pub fn by_hand() -> Self {
         by_hand::weights()

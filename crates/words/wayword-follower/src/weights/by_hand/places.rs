@@ -1,4 +1,4 @@
-//! What rooms and objects say that a step names.
+//! Weights by hand for the rooms and objects that a step names.
 
 use super::{Set, middle_deg};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 use wayword_language::reading::steps::Relation;
 
-/// How a mention goes with an object that is so near, and with a room.
+/// Weights of a mention by the distance class of the object, and of the room.
 const OF_THING: [f64; CLASSES] = [1.0, 0.8, 0.3, -0.4, -1.0, -1.5, 0.0];
 const OF_ROOM: [f64; CLASSES] = [1.5, 1.0, 0.2, -0.7, -1.5, -2.0, 0.0];
 
@@ -27,7 +27,7 @@ pub(super) fn places(set: &mut Set<'_>) {
         }
     }
     for at in 0..12 {
-        // The place lies on a side of the walker: positive right, and mirrored so that right is told.
+        // The place lies on the side in the text: positive right, mirrored if the text has left.
         set(&SIDE_OF_PLACE, &[(at, 12)], 0.6 * libm::sin(middle_deg(at, 12).to_radians()));
     }
     for passed in 0..5 {
@@ -46,7 +46,7 @@ pub(super) fn places(set: &mut Set<'_>) {
     }
 }
 
-/// What the whole walk has to do with what is named.
+/// Weights of the whole walk by its distance from the named places.
 fn of_walk(class: usize, is_goal: usize, set: &mut Set<'_>) {
     let (is_goal, class) = ((is_goal, 2), (class, CLASSES));
     set(&NAMED_ROOM, &[is_goal, class], 0.5 * OF_ROOM[class.0]);
