@@ -1,7 +1,9 @@
-//! A detector as a witness: it looks for names in the views along a path, and its finds and misses go into the captions.
+//! Corrects captions with a detector: it looks for names in the views along a path, and its finds and misses change the
+//! captions.
 //!
-//! What it found is seen, with its box. What captions named and it did not find becomes doubtful or is struck out, by what is
-//! known of its recall ([`DetectorFigures`]). What was proposed and not found is left out.
+//! A name that the detector finds counts as seen and gets its box. A name that a caption gave and the detector missed
+//! becomes doubtful or is denied, depending on how often the detector misses real things ([`DetectorFigures`]). A name
+//! that was only proposed and not found leaves no trace.
 
 mod finds;
 mod nouns;
@@ -17,28 +19,28 @@ use wayword_checks::detected::DetectorFigures;
 use wayword_core::{Caption, Detector, Gaze, Look, Observation, Path, Platform, Sighting, View, Witness};
 use wayword_language::lexicon::{normal, thing};
 
-/// What looks for things, and what is known of it.
+/// A detector, its measured reliability, and the names that it looks for on its own.
 #[derive(Clone, Copy)]
 pub struct Seeker<'a> {
-    /// Looks for them.
+    /// The detector itself.
     pub detector: &'a dyn Detector,
-    /// How often it is right.
+    /// How often its finds and misses are right.
     pub figures: &'a DetectorFigures,
-    /// Names that it looks for in every view, whatever was said of it.
+    /// Names that it looks for in every view, even where no caption mentions them.
     pub nouns: &'a [String],
 }
 
-/// How probable a thing is before the detector looks, where a caption names it for sure, where it names it as a guess or a
-/// text claims it, and where it is only a proposal.
+/// Probability that a thing is there before the detector looks: where a caption names it for sure, where a caption
+/// guesses it or a text claims it, and where it is only a proposal from a list.
 const NAMED: f64 = 0.7;
 const CLAIMED: f64 = 0.5;
 const PROPOSED: f64 = 0.01;
 
-/// What is looked for: how it is called, and how probable it is beforehand.
+/// The names to look for, each with the probability that the thing is there before the detector looks.
 type Wanted = BTreeMap<String, f64>;
 
-/// Looks for what captions named and for what is proposed, in every view that was captioned, and corrects the captions. Gives
-/// the number of views that the detector looked at.
+/// Looks for the names that captions mention and for the proposed ones in every captioned view, and corrects the
+/// captions. Returns the number of views that the detector looked at.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
@@ -52,7 +54,7 @@ pub fn seek(
     correct(&seen, Some(Walk { platform, path }), observations, seeker)
 }
 
-/// The same for the caption of one view that is at hand.
+/// Like [`seek`], for the caption of a single view.
 ///
 /// # Errors
 /// When it has no picture, or the detector fails.
@@ -76,7 +78,8 @@ fn correct(
     Ok(if wanted.is_empty() { 0 } else { seen.len() })
 }
 
-/// Looks for what texts claim all around the frames of a path of which nothing else is known: captions without words.
+/// Looks all around each frame of a path for the things that texts claim, where no captions exist. The observations
+/// that it returns have captions without words, only with sightings.
 ///
 /// # Errors
 /// When a view cannot be had, or the detector fails.
@@ -99,7 +102,7 @@ pub fn seek_claims(
     Ok(observations)
 }
 
-/// What a detector alone says of the frames: captions without words, with what it found, denied and was not sure of.
+/// The detector's own evidence: captions without words, with only the sightings that it found, denied or left unsure.
 #[must_use]
 pub fn alone(observations: &[Observation], detector: &str) -> Vec<Observation> {
     let is_its = |sighting: &&Sighting| sighting.spot.is_some() || sighting.by == detector;
@@ -112,7 +115,7 @@ pub fn alone(observations: &[Observation], detector: &str) -> Vec<Observation> {
     observations.iter().map(observation).collect()
 }
 
-/// What the captions name, as far as the lexicon has it.
+/// The names in the captions that the lexicon has, with their prior probability.
 fn named(observations: &[Observation]) -> Wanted {
     let mut wanted = Wanted::new();
     let captions = observations.iter().flat_map(|seen| &seen.looks).map(|look| &look.caption);

@@ -1,6 +1,7 @@
 //! From views to words: the dialogue, prompts, styles, writing and repair, and the roles that need no model.
 //!
-//! Architecture invariant: nothing here opens a file or a connection, and nothing knows a platform beyond the trait.
+//! Architecture invariant: no module here opens a file or a connection, and none knows more of a platform than the
+//! trait [`wayword_core::Platform`].
 
 pub mod detection;
 pub mod dialogue;

@@ -1,4 +1,4 @@
-//! Looks at the views along a path and runs a dialogue about each.
+//! Looks at the views along a path and runs a dialogue about each, so that every frame gets a caption.
 
 use crate::{
     dialogue::{Asker, Condensed, Dialogue, Mode, Need, RulesSummariser, Summariser},
@@ -10,7 +10,7 @@ use wayword_core::{
     PlatformError, Side, View, Witness,
 };
 
-/// Who asks, sees and summarises, and how.
+/// The roles that make captions of views: asker, answerer and summariser, and the mode in which they work.
 #[derive(Clone, Copy)]
 pub struct Observers<'a> {
     /// Chooses the questions.
@@ -21,9 +21,9 @@ pub struct Observers<'a> {
     pub summariser: &'a dyn Summariser,
     /// Dialogue, or fixed queries.
     pub mode: Mode,
-    /// Hash of the prompts, where a language model takes part.
+    /// Hash of the prompts, where a language model plays a role.
     pub prompts_hash: Option<&'a str>,
-    /// The detector that completed and corrected the captions, and what its scores mean, where there is one.
+    /// The name of the detector that corrected the captions, with its score threshold, if there is one.
     pub detector: Option<&'a str>,
 }
 
@@ -41,24 +41,24 @@ pub enum ObserveError {
 /// A panorama's description has fewer words than this (arXiv 2403.11487).
 pub(crate) const CONDENSED_WORDS: usize = 20;
 
-/// A view that is to be talked about.
+/// A view that still needs its caption.
 #[derive(Debug, Clone)]
 pub struct Planned {
     /// Number of its frame on the path.
     pub frame: usize,
     /// The direction and width that the view shows.
     pub gaze: Gaze,
-    /// What is looked at.
+    /// The view itself.
     pub view: View,
 }
 
-/// Talks about views that do not depend on each other: one caption each, in their order.
+/// Makes captions for views that do not depend on each other: one caption each, in their order.
 pub type Talk<'a> = dyn Fn(&[Planned]) -> Result<Vec<Caption>, ModelError> + 'a;
 
 /// Captions of a path: one observation per frame.
 ///
-/// At the last frame of a central run, if nothing is seen ahead, the walker looks all around. A robot that has arrived
-/// would do so, and the task has to be about something that can be seen from there.
+/// At the last frame of a central run, if the view ahead shows no object, the walker looks all around. A robot that has
+/// arrived would do so, and the task has to be about something that can be seen from there.
 ///
 /// # Errors
 /// When the platform gives no view, or a question is not answered.
@@ -73,7 +73,7 @@ pub fn observe(
     })
 }
 
-/// The same, where the caller says how views are talked about.
+/// Like [`observe`], with a function that makes the captions of several views at once, for example in parallel.
 ///
 /// # Errors
 /// When the platform gives no view, or a question is not answered.
@@ -95,7 +95,7 @@ pub fn observe_with(
     Ok(frames.map(|(frame, looks)| observation(frame, looks, observers)).collect::<Result<_, _>>()?)
 }
 
-/// The views of a path that are to be talked about, frame by frame.
+/// The views of a path that need a caption, frame by frame.
 ///
 /// # Errors
 /// When the platform gives no view.
@@ -107,7 +107,7 @@ pub fn plan(platform: &dyn Platform, path: &Path, selection: FrameSelection) -> 
     Ok(planned)
 }
 
-/// The views all around the end of a central path, where its view ahead shows nothing.
+/// The views all around the end of a central path, where the view ahead shows no object.
 fn plan_at_end(
     platform: &dyn Platform,
     path: &Path,
@@ -117,17 +117,17 @@ fn plan_at_end(
     let (Some(frame), Some(at_end)) = (path.frames.last(), looks.last()) else { return Ok(None) };
     let mut sightings = at_end.iter().flat_map(|look| &look.caption.sightings);
     let is_empty = !sightings.any(|sighting| sighting.witness == Witness::Seen);
-    // Without poses one cannot look around: the frame has one picture.
+    // Without poses the walker cannot look around: the frame has one picture.
     if !is_empty || !path.motion.is_known() || selection != FrameSelection::Central {
         return Ok(None);
     }
     views(platform, path, looks.len() - 1, &Gaze::around(frame.pose.heading)).map(Some)
 }
 
-/// Joins the looks of a frame to its observation.
+/// Makes the observation of a frame from its looks, with a summary of their captions.
 ///
 /// # Errors
-/// When the summariser gives nothing.
+/// When the summariser fails.
 pub fn observation(frame: &Frame, looks: Vec<Look>, observers: Observers<'_>) -> Result<Observation, ModelError> {
     let Condensed { text, by } = summary(frame, &looks, observers)?;
     Ok(Observation { summary: text, by, looks })
@@ -139,7 +139,7 @@ fn assign(captions: Vec<Caption>, planned: Vec<Planned>, looks: &mut [Vec<Look>]
     }
 }
 
-/// Where to look from a frame.
+/// The directions in which a frame is looked at.
 #[must_use]
 pub fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
     match selection {
@@ -148,8 +148,8 @@ pub fn gazes(frame: &Frame, selection: FrameSelection) -> Vec<Gaze> {
     }
 }
 
-/// Where to look all around a frame: ahead, right, behind, left. Only ahead if the motion is unknown, because nothing says then
-/// where the other directions are.
+/// The directions all around a frame: ahead, right, behind, left. Only ahead if the motion is unknown, because the
+/// other directions are then unknown too.
 #[must_use]
 pub fn gazes_around(path: &Path, frame: &Frame) -> Vec<Gaze> {
     match path.motion {
@@ -161,8 +161,8 @@ pub fn gazes_around(path: &Path, frame: &Frame) -> Vec<Gaze> {
 fn views(platform: &dyn Platform, path: &Path, at: usize, gazes: &[Gaze]) -> Result<Vec<Planned>, PlatformError> {
     let views = gazes.iter().map(|gaze| Ok((gaze, platform.look(&path.scene, &path.frames[at], *gaze)?)));
     let views: Vec<(&Gaze, View)> = views.collect::<Result<_, PlatformError>>()?;
-    // A camera shows one direction of a place, so blank views are left out. If all are blank they stay, because the
-    // error then says what is missing.
+    // A camera shows only one direction, so blank views are left out. If all views are blank they stay: the error then
+    // explains what the platform lacks.
     let all_blank = views.iter().all(|(_, view)| view.is_blank());
     let planned = views.into_iter().filter(|(_, view)| all_blank || !view.is_blank()).map(|(gaze, view)| {
         // A camera's picture may show a slightly different direction than the one asked for.
@@ -173,7 +173,7 @@ fn views(platform: &dyn Platform, path: &Path, at: usize, gazes: &[Gaze]) -> Res
     Ok(planned.collect())
 }
 
-/// Asks about a view until all is said.
+/// Runs the dialogue about one view to its end and returns the caption.
 ///
 /// # Errors
 /// When a role does not answer.
@@ -197,7 +197,8 @@ pub fn talk_about(view: &View, observers: Observers<'_>) -> Result<Caption, Mode
     }
 }
 
-/// The error for an answerer that leaves a question out. Without it the dialogue would ask the same question for ever.
+/// The error for an answerer that returns no answer to a question. Without it the dialogue would repeat the question
+/// forever.
 pub(crate) fn unanswered(answerer: &dyn Answerer) -> ModelError {
     ModelError::Failed { model: answerer.name().to_owned(), reason: "it gave no answer".to_owned() }
 }

@@ -9,23 +9,23 @@ use wayword_checks::SeenThing;
 use wayword_core::{Exchange, Witness};
 use wayword_language::lexicon::{Class, agree, thing};
 
-/// What a caption got right.
+/// How the objects of a caption agree with the labels of its view.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Score {
     /// How many different objects it names, of those that labels can judge.
     pub named: usize,
-    /// The named objects that agree with no label of the view.
+    /// The named objects that no label of the view agrees with.
     pub hallucinated: Vec<String>,
     /// How many different names the labels of the view have.
     pub labelled: usize,
-    /// How many of those it names.
+    /// How many of the label names the caption mentions.
     pub found: usize,
 }
 
 /// Compares the objects that a caption names with the labels of its view.
 ///
-/// Walls, floors, doors and the like are left out on both sides: most label sets lack them, so that they could be
-/// neither found nor hallucinated.
+/// Walls, floors, doors and the like are left out on both sides: most label sets lack them, so a caption could neither
+/// find nor invent them.
 #[must_use]
 pub fn score(caption: &str, labels: &[SeenThing]) -> Score {
     let judged = |name: &str| !matches!(thing(name).map(|thing| thing.class), Some(Class::Fabric | Class::Door));
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_caption_says_is_absent_is_not_hallucinated_and_walls_are_not_judged() {
+    fn score_caption_ignores_denied_things_and_walls() {
         let score = score("There is a bed and no mirror. The wall is white.", &labels(&["bed"]));
         assert_eq!((score.named, score.hallucinated.len(), score.found), (1, 0, 1));
     }

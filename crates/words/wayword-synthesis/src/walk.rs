@@ -1,4 +1,4 @@
-//! A path together with what was seen along it: all that a writer gets.
+//! A path together with the observations along it: the input of every writer.
 
 use serde::{Deserialize, Serialize};
 use wayword_checks::{Evidence, Memory};
@@ -16,10 +16,10 @@ pub enum FrameSelection {
     Panoramic,
 }
 
-/// Who answers from labels, as sightings name it.
+/// The answerer's name in sightings that come from labels.
 const LABELS: &str = "labels";
 
-/// All that a writer gets to know about a path.
+/// Everything that a writer may use about a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Walk {
     /// The path, with its target where one is given.
@@ -33,15 +33,15 @@ pub struct Walk {
 /// An object that was seen from a frame, in words that a writer can use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen<'a> {
-    /// What the witness said.
+    /// The sighting in the caption.
     pub sighting: &'a Sighting,
-    /// The side of the walker on which it is, where the caption says so and the motion is known.
+    /// The side of the walker on which it is, where the caption places it and the motion is known.
     pub side: Option<Side>,
 }
 
 impl Walk {
-    /// Joins a path and what was seen along it. Where the motion is unknown, it leaves out whatever the path says of
-    /// storeys, and of the target's side and distance from the walker.
+    /// Joins a path and the observations along it. Where the motion is unknown, it drops the storeys of the frames and
+    /// every property of the target that depends on the walker's pose, such as its side.
     #[must_use]
     pub fn new(mut path: Path, observations: Vec<Observation>) -> Self {
         if !path.motion.is_known() {
@@ -54,8 +54,9 @@ impl Walk {
         Self { moves: path.moves(), path, observations }
     }
 
-    /// The objects that were seen from a frame, look by look. What a model named is left out where it is no thing that the
-    /// lexicon has: half of a phrase that was read wrongly ("soft") would become a landmark. Labels name things only.
+    /// The objects that were seen from a frame, look by look. A name that a model gave is left out if the lexicon does
+    /// not know it: half of a phrase that was read wrongly ("soft") would otherwise become a landmark. Names from
+    /// labels are always things.
     pub fn seen(&self, frame: usize) -> impl Iterator<Item = Seen<'_>> {
         let heading = self.path.frames.get(frame).map_or(Heading::NORTH, |frame| frame.pose.heading);
         let has_sides = self.path.motion.is_known();
@@ -89,12 +90,12 @@ impl Walk {
         Evidence::from_captions(&self.path, &self.observations)
     }
 
-    /// How far one walks from one frame to another, metres along the hops.
+    /// The length of the way between two frames, metres along the hops.
     pub(crate) fn walked_m(&self, from: usize, to: usize) -> f64 {
         self.moves.get(from..to).unwrap_or_default().iter().map(|step| step.distance_m).sum()
     }
 
-    /// What stays in mind of it, as its captions tell.
+    /// The memory of the walk: rooms, things, bends and stairs, from its captions.
     #[must_use]
     pub fn memory(&self) -> Memory {
         let evidence = self.evidence().unwrap_or_else(|| Evidence::of_path_alone(&self.path));

@@ -1,4 +1,4 @@
-//! Where the platform knows the depth of its pictures, a detector's finds are as far away as the labels say.
+//! Checks that the distances of a detector's finds agree with the labels, on a platform with depth pictures.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -16,14 +16,14 @@ use wayword_synthesis::{
 };
 use wayword_testkit::PlayedDetector;
 
-/// A label's distance is to the middle of a thing, a find's to what one sees of it: the front of a bed, the near end of a
-/// rug.
+/// A label's distance is that of a thing's middle, a find's that of its visible part: the front of a bed, the near end
+/// of a rug.
 const TOLERANCE_M: f64 = 1.0;
 
-/// A detector that finds all that a label lists, and nothing else.
+/// A detector that finds exactly the things that labels list.
 const PLAYED: PlayedDetector = PlayedDetector { same: agree, recall: 1.0, alarms: 0.0, repeats: false, seed: 1 };
 
-/// The played detector with the boxes around what the picture shows of each thing.
+/// The played detector with boxes around the visible parts of each thing.
 struct Outlined;
 
 impl Detector for Outlined {
@@ -56,14 +56,15 @@ fn figures() -> DetectorFigures {
     DetectorFigures { found_from: 0.5, all, ..DetectorFigures::default() }
 }
 
-/// The labels of all that a frame shows around it.
+/// All labels around a frame.
 fn labels(platform: &dyn Platform, path: &Path, at: usize) -> Vec<Label> {
     let look = |gaze| platform.look(&path.scene, &path.frames[at], gaze).unwrap();
     let views = gazes_around(path, &path.frames[at]).into_iter().map(look);
     views.flat_map(|view| view.ground_truth().unwrap().labels.clone()).collect()
 }
 
-/// How far finds are from what the labels say, metres: one for each find of a name of which the view shows one thing.
+/// The errors of the distances of finds compared with the labels, metres: one for each find of a name that the view's
+/// labels have once.
 fn errors_m(platform: &dyn Platform, path: &Path) -> Vec<f64> {
     let all: Vec<Vec<Label>> = (0..path.frames.len()).map(|at| labels(platform, path, at)).collect();
     let names: BTreeSet<String> = all.iter().flatten().map(|label| normal(&label.name)).collect();
@@ -85,7 +86,7 @@ fn errors_m(platform: &dyn Platform, path: &Path) -> Vec<f64> {
 }
 
 #[test]
-fn finds_are_as_far_away_as_labels_say() {
+fn distances_of_finds_agree_with_labels() {
     let platform = HousePlatform::new(HouseOptions { width_px: 320, height_px: 240, ..HouseOptions::default() });
     let mut errors: Vec<f64> = Vec::new();
     for seed in 0..4 {

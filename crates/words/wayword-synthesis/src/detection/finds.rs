@@ -1,13 +1,13 @@
-//! Asks the detector: the pictures of the views along a path, and where it finds each name in them.
+//! Runs the detector on the views along a path and collects where it found each name.
 
 use super::Seeker;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{Gaze, ModelError, Observation, Path, Platform, PlatformError, Spot, View, apart};
 
-/// Boxes that share more of what they cover together are of the same thing.
+/// Two boxes are taken for the same thing if their overlap is more than this share of their union.
 const SAME: f64 = 0.5;
 
-/// A view of an observation's look: the number of the frame, that of the look, and what it shows.
+/// The view of one look of an observation, with the numbers of its frame and look.
 pub(super) struct Seen {
     pub(super) frame: usize,
     pub(super) look: usize,
@@ -24,10 +24,11 @@ pub(super) struct Walk<'a> {
 /// The frame and the number of a look.
 pub(super) type Place = (usize, usize);
 
-/// The finds of one name, look by look.
+/// The boxes that were found for one name, by look.
 pub(super) type Finds = BTreeMap<Place, Vec<Spot>>;
 
-/// The pictures of all looks. A look without one is left out: the detector cannot have missed anything there.
+/// The views of all looks that have a picture. A look without a picture is left out, because the detector cannot have
+/// missed anything there.
 pub(super) fn views(
     platform: &dyn Platform,
     path: &Path,
@@ -43,7 +44,7 @@ pub(super) fn views(
     Ok(seen)
 }
 
-/// The finds of each name.
+/// Runs the detector once over all views and returns, for each name, the boxes that pass its score threshold.
 pub(super) fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result<Vec<Finds>, ModelError> {
     let views: Vec<&View> = seen.iter().map(|seen| &seen.view).collect();
     let mut found: Vec<Finds> = vec![Finds::new(); names.len()];
@@ -66,7 +67,8 @@ pub(super) fn finds(seen: &[Seen], names: &[&str], seeker: Seeker<'_>) -> Result
     Ok(found)
 }
 
-/// Tells how far away the finds are, where the platform knows it. It is asked once for a view, and only for one with finds.
+/// Fills in the distance of each find where the platform has depth. Depth is asked for once per view, and only for
+/// views with finds.
 pub(super) fn measure(walk: Walk<'_>, seen: &[Seen], finds: &mut [Finds]) -> Result<(), PlatformError> {
     for Seen { frame, look, view } in seen {
         let place = (*frame, *look);
@@ -88,7 +90,7 @@ pub(super) fn measure(walk: Walk<'_>, seen: &[Seen], finds: &mut [Finds]) -> Res
     Ok(())
 }
 
-/// For each frame that was looked at, whether the name was found from it.
+/// For each frame with a look that has a picture, in order: whether the name was found from it.
 pub(super) fn frames(seen: &[Seen], finds: &Finds) -> Vec<bool> {
     let looked_at: BTreeSet<usize> = seen.iter().map(|seen| seen.frame).collect();
     looked_at.iter().map(|frame| finds.keys().any(|(of, _)| of == frame)).collect()

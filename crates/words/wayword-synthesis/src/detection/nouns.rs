@@ -1,4 +1,5 @@
-//! What a detector looks for by itself.
+//! The names that a detector looks for even when no caption mentions them: a list of household things, and what the
+//! reference texts of a style name often.
 
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::Style;
@@ -7,7 +8,7 @@ use wayword_language::{
     reading::{What, read},
 };
 
-/// The list of things worth naming, as data.
+/// The built-in list of household things, one name per line.
 const LIST: &str = include_str!("nouns.txt");
 
 /// Most names that a style adds.
@@ -16,7 +17,7 @@ const MOST_OF_STYLE: usize = 30;
 /// Most names that are looked for: each costs time in every view.
 const MOST: usize = 300;
 
-/// The names of a list: one on each line, without comments. `None` where it has none, or too many.
+/// Parses a list of names: one per line, `#` begins a comment. `None` if the list is empty or longer than the limit.
 #[must_use]
 pub fn listed(text: &str) -> Option<Vec<String>> {
     let names = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
@@ -24,7 +25,7 @@ pub fn listed(text: &str) -> Option<Vec<String>> {
     (1..=MOST).contains(&names.len()).then(|| names.into_iter().collect())
 }
 
-/// Household things, and what the texts of these styles name most often.
+/// The household things of the built-in list, and the things that the texts of these styles name most often.
 #[must_use]
 pub fn usual<'a>(styles: impl Iterator<Item = &'a Style>) -> Vec<String> {
     let mut names: BTreeSet<String> = listed(LIST).unwrap_or_default().into_iter().collect();
@@ -63,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn a_style_adds_what_its_texts_name_more_than_once() {
+    fn usual_nouns_adds_things_that_a_style_names_repeatedly() {
         let references = ["Stop at the canoe.", "Pass the guitar and the sofa.", "Stop beside the guitar."];
         let style = Style { references: references.map(str::to_owned).to_vec(), ..Style::default() };
         let names = usual(std::iter::once(&style));

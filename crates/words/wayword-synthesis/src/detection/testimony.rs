@@ -1,4 +1,4 @@
-//! What becomes of captions and claims by what a detector found: seen, denied, or not sure.
+//! Applies the detector's finds and misses to captions and claims: each name becomes seen, denied or unsure.
 
 use super::{
     PROPOSED, Seeker, Wanted,
@@ -14,20 +14,20 @@ use wayword_checks::detected::{Judged, judge};
 use wayword_core::{Caption, Look, ModelError, Observation, Sighting, Spot, Where, Witness};
 use wayword_language::lexicon::{Class, agree, normal, thing};
 
-/// What the finds are for.
+/// What the detector's results are used for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Purpose {
     /// Captions are corrected and completed.
     Captions,
-    /// Claims are judged of which no caption tells.
+    /// Claims that no caption mentions are judged.
     Claims,
 }
 
 /// The looks at which the detector looked.
 type Places = BTreeSet<Place>;
 
-/// Looks for what is wanted in the views, and puts what it finds and misses into the captions. Where the walk is known of which
-/// the views are, the finds get distances.
+/// Looks for the wanted names in the views, and records what it finds and misses in the captions. Where the path of the
+/// views is known, the finds get distances.
 ///
 /// # Errors
 /// When there is no view for captions, or the detector fails.
@@ -84,11 +84,12 @@ fn of<'a>(caption: &'a mut Caption, name: &'a str) -> impl Iterator<Item = &'a m
     caption.sightings.iter_mut().filter(move |sighting| normal(&sighting.name) == name)
 }
 
-/// It is there: it is seen wherever it was found.
+/// The thing is somewhere along the path: it becomes seen in each look in which it was found, and a guess in the
+/// others.
 fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
     each(observations, looked_at, |at, look| {
         let Some(spots) = finds.get(&at) else {
-            // It is somewhere along the path; the caption that names it here may be wrong all the same.
+            // It is somewhere along the path, but the caption that names it in this look may still be wrong.
             doubt(look, name, by);
             return;
         };
@@ -101,7 +102,8 @@ fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at:
             (sighting.witness, sighting.place, sighting.spot) = (Witness::Seen, place, Some(best));
             sighting.is_far = is_far.unwrap_or(sighting.is_far);
         }
-        // A more exact name for it was perhaps said ("dining table"): it stays, and nothing is said twice.
+        // The caption may already have a more exact name ("dining table"): that one stays, and the thing is not named
+        // twice.
         let is_said = |sighting: &Sighting| sighting.witness == Witness::Seen && agree(&sighting.name, name);
         if !is_named && !look.caption.sightings.iter().any(is_said) {
             let several = spots.len() > 1;
@@ -113,8 +115,8 @@ fn found(observations: &mut [Observation], name: &str, finds: &Finds, looked_at:
     });
 }
 
-/// The find that a look stands for: the nearest, or the best where a distance is not known. That of a door is not told, for it
-/// would be that of the room behind an open one.
+/// The find that represents a look: the nearest one, or the best-scored where a distance is unknown. A door gets no
+/// distance, because the depth there would be that of the room behind an open door.
 pub(super) fn nearest(spots: &[Spot], name: &str) -> Spot {
     if thing(name).is_some_and(|thing| thing.class == Class::Door) {
         return Spot { distance_m: None, ..spots[0] };
@@ -125,7 +127,7 @@ pub(super) fn nearest(spots: &[Spot], name: &str) -> Spot {
     spots[1..].iter().fold(spots[0], nearer)
 }
 
-/// It is nowhere: the captions that name it are wrong.
+/// The thing is nowhere along the path: every caption that names it is wrong, so the sighting becomes denied.
 fn struck_out(observations: &mut [Observation], name: &str, by: &str) {
     for look in looks(observations) {
         for sighting in of(&mut look.caption, name) {
@@ -134,7 +136,8 @@ fn struck_out(observations: &mut [Observation], name: &str, by: &str) {
     }
 }
 
-/// It may be there: where a caption saw it and the detector did not, that is a guess.
+/// It is open whether the thing is there: where a caption saw it and the detector did not, the sighting becomes a
+/// guess.
 fn doubted(observations: &mut [Observation], name: &str, finds: &Finds, looked_at: &Places, by: &str) {
     each(observations, looked_at, |at, look| {
         if !finds.contains_key(&at) {
@@ -143,7 +146,7 @@ fn doubted(observations: &mut [Observation], name: &str, finds: &Finds, looked_a
     });
 }
 
-/// What the detector says of a claim, in every look.
+/// Adds the detector's result for a claim to every look.
 fn said_of_all(observations: &mut [Observation], name: &str, witness: Witness, by: &str) {
     looks(observations).for_each(|look| look.caption.sightings.push(Sighting::new(name, witness, by)));
 }
@@ -164,8 +167,8 @@ fn each(observations: &mut [Observation], looked_at: &Places, mut change: impl F
     }
 }
 
-/// What a detector changed is told again by rules, so that no words name what the caption does not hold. `was` gives the
-/// sightings of each look as they were.
+/// Writes the text of changed captions anew by rules, so that no words name a thing that the sightings no longer
+/// contain. `was` yields the sightings of each look before the change.
 fn retell(observation: &mut Observation, was: &mut impl Iterator<Item = Vec<Sighting>>) -> Result<(), ModelError> {
     let mut is_changed = false;
     for (look, was) in observation.looks.iter_mut().zip(was) {

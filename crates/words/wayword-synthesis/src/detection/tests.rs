@@ -6,7 +6,7 @@ use wayword_core::{
     SceneId, Scoring, Spot, Style, Verdict, ViewpointGraph, ViewpointId, Where, path::Stop,
 };
 
-/// Three frames straight ahead, with a picture each.
+/// A platform with three frames straight ahead, with a picture each.
 struct Corridor;
 
 impl Platform for Corridor {
@@ -31,7 +31,7 @@ impl Platform for Corridor {
         Ok(View::new(from.pose, gaze.horizontal_fov_rad, picture, None))
     }
 
-    /// A thing 3 m ahead on the right, before a wall at 6 m; nothing is known at the last frame.
+    /// A thing 3 m ahead on the right, before a wall at 6 m; the last frame has no depth.
     fn depth(&self, _: &SceneId, from: &Frame, _: Gaze) -> Result<Option<Depth>, PlatformError> {
         let metres = (0..90 * 60).map(|at| if at % 90 >= 70 { 3.0 } else { 6.0 }).collect();
         Ok((from.pose.position.y < 3.0).then(|| Depth::new(90, 60, metres).unwrap()))
@@ -46,7 +46,7 @@ impl Platform for Corridor {
     }
 }
 
-/// Finds each name at the frames that are given for it, on the right of the picture.
+/// A detector that finds each name at the given frames, on the right of the picture.
 struct Finds(Vec<(&'static str, Vec<usize>)>);
 
 impl Detector for Finds {
@@ -78,7 +78,7 @@ fn path() -> Path {
     Path { id: "p".into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None }
 }
 
-/// Finds what is there with 0.95, mostly from two frames or three.
+/// Figures of a detector that finds a real thing with probability 0.95, mostly from two or three frames.
 fn figures() -> DetectorFigures {
     let all = Rates {
         shown: 2000,
@@ -92,7 +92,7 @@ fn figures() -> DetectorFigures {
     DetectorFigures { found_from: 0.5, all, ..DetectorFigures::default() }
 }
 
-/// The captions of the frames after a detector looked; each is given by what it saw.
+/// The captions of the frames after a detector looked; `captions` has the names that each frame's caption saw.
 fn after(captions: [&[&str]; 3], finds: Vec<(&'static str, Vec<usize>)>, nouns: &[&str]) -> Vec<Observation> {
     let path = path();
     let observed = |(frame, names): (&Frame, &[&str])| {
@@ -113,7 +113,7 @@ fn of_frame<'a>(seen: &'a [Observation], at: usize, name: &str) -> Option<&'a Si
 }
 
 #[test]
-fn what_is_found_is_seen_with_its_box_and_its_side() {
+fn seek_marks_finds_as_seen_with_box_and_side() {
     let seen = after([&["sofa"], &["sofa"], &[]], vec![("sofa", vec![0, 1])], &[]);
     let sofa = of_frame(&seen, 0, "sofa").unwrap();
     assert_eq!((sofa.witness, sofa.place, sofa.by.as_str()), (Witness::Seen, Some(Where::Right), "eye"));
@@ -126,7 +126,7 @@ fn what_is_found_is_seen_with_its_box_and_its_side() {
 }
 
 #[test]
-fn a_find_is_as_far_as_the_depth_says_and_unknown_where_nobody_knows_it() {
+fn seek_takes_distances_from_depth_where_it_is_known() {
     let seen = after([&["sofa"], &["sofa"], &["sofa"]], vec![("sofa", vec![0, 1, 2])], &[]);
     let far_m = |at| of_frame(&seen, at, "sofa").unwrap().spot.unwrap().distance_m;
     let [first, second, third] = [0, 1, 2].map(far_m);
@@ -158,7 +158,7 @@ fn records_without_distances_are_read() {
 }
 
 #[test]
-fn what_a_caption_made_up_is_struck_out_of_its_words_too() {
+fn seek_removes_denied_things_from_the_words() {
     let seen = after([&["sofa"], &["sofa", "piano"], &[]], vec![("sofa", vec![0, 1])], &[]);
     let piano = of_frame(&seen, 1, "piano").unwrap();
     assert_eq!((piano.witness, piano.by.as_str()), (Witness::Denied, "test/detector"));
@@ -169,13 +169,13 @@ fn what_a_caption_made_up_is_struck_out_of_its_words_too() {
 }
 
 #[test]
-fn a_caption_that_nobody_changed_keeps_its_words() {
+fn seek_leaves_words_of_unchanged_captions() {
     let seen = after([&["ghost story"], &[], &[]], vec![], &[]);
     assert_eq!(seen[0].looks[0].caption.text, "ghost story", "a name that the lexicon does not have is not looked for");
 }
 
 #[test]
-fn proposals_are_added_where_they_were_found_often_enough_and_else_left_out() {
+fn seek_adds_proposals_only_if_found_often_enough() {
     let seen = after([&[], &[], &[]], vec![("bed", vec![0, 1, 2]), ("vase", vec![1])], &["bed", "vase", "sink"]);
     for at in 0..3 {
         let bed = of_frame(&seen, at, "bed").unwrap();
@@ -185,7 +185,7 @@ fn proposals_are_added_where_they_were_found_often_enough_and_else_left_out() {
 }
 
 #[test]
-fn claims_about_a_path_that_nobody_described_pass_fail_or_stay_open() {
+fn claims_without_captions_pass_fail_or_stay_open() {
     let path = path();
     let claims = ["sofa", "piano", "lamp"].map(str::to_owned).into();
     let mut figures = figures();
@@ -208,7 +208,7 @@ fn claims_about_a_path_that_nobody_described_pass_fail_or_stay_open() {
 }
 
 #[test]
-fn claims_are_looked_for_all_around_where_it_is_known_where_that_is() {
+fn seek_claims_looks_all_around_only_with_known_motion() {
     let claims = ["sofa".to_owned()].into();
     let (finds, figures) = (Finds(Vec::new()), figures());
     for (motion, directions) in [(Motion::Known, 4), (Motion::Unknown, 1)] {

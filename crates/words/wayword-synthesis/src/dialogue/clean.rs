@@ -1,4 +1,4 @@
-//! Takes from a model's reply what was asked for: one question, or one answer.
+//! Extracts the one question or the one answer that was asked for from a model's reply.
 
 use wayword_language::{answers::ASKING, text::words};
 
@@ -6,17 +6,17 @@ use wayword_language::{answers::ASKING, text::words};
 const QUESTION_CHARS: usize = 300;
 /// Longest answer, characters; a longer one ends with its last whole sentence.
 const ANSWER_CHARS: usize = 1200;
-/// Most of a reply that is looked at, bytes.
+/// Longest part of a reply that is examined, bytes.
 const MOST_BYTES: usize = 16_384;
 /// Labels that models put before a question.
 const QUESTION_LABELS: [&str; 4] = ["question:", "q:", "next question:", "new question:"];
 /// Marks that begin another turn within an answer, wherever they are.
 const TURNS: [&str; 5] = ["question:", "user:", "### ", "<|", "</s>"];
-/// Marks that do so only after a whole sentence, because "the short answer: no" is one answer.
+/// Marks that begin another turn only after a whole sentence, because "the short answer: no" is one answer.
 const TURNS_BEHIND_SENTENCES: [&str; 5] = ["q:", "a:", "answer:", "human:", "assistant:"];
 
-/// The one question in a reply, without labels, quotes, chatter, further questions and an invented answer. `None` where
-/// there is no question, or one of more than 300 characters.
+/// The one question in a reply, without labels, quotes, chatter, further questions or an invented answer. `None` if
+/// there is no question, or it is longer than the limit.
 pub(super) fn question(reply: &str) -> Option<String> {
     let reply = head(reply, MOST_BYTES);
     let after = QUESTION_LABELS.iter().filter_map(|label| labels(reply, label).last().map(|at| at + label.len())).max();
@@ -33,7 +33,8 @@ pub(super) fn question(reply: &str) -> Option<String> {
     fits.then(|| bare.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
-/// An answer without the question repeated before it and the invented turns after it, of bounded length.
+/// The answer in a reply, without a repetition of the question before it and invented turns after it, cut to the length
+/// limit.
 pub(super) fn answer(reply: &str, question: &str) -> String {
     let reply = without_lead(head(reply, MOST_BYTES).trim(), question);
     let behind_sentence = |at: &usize| {
@@ -52,7 +53,7 @@ fn head(text: &str, bytes: usize) -> &str {
     &text[..text.floor_char_boundary(bytes)]
 }
 
-/// Where a label is, in upper or lower case, at the start of a line or after a space.
+/// The positions of a label, in upper or lower case, at the start of a line or after a space.
 fn labels<'a>(text: &'a str, label: &'a str) -> impl Iterator<Item = usize> + 'a {
     text.char_indices().map(|(at, _)| at).filter(move |at| {
         let is_label = text.get(*at..at + label.len()).is_some_and(|here| here.eq_ignore_ascii_case(label));

@@ -1,4 +1,4 @@
-//! Checks a summary against what was said.
+//! Checks a caption against the sightings of its dialogue, to keep hallucinated objects out.
 
 use super::answers::{Mention, denies, mentions};
 use std::{collections::BTreeSet, fmt};
@@ -8,16 +8,16 @@ use wayword_language::{
     text::words,
 };
 
-/// Something that a caption says and its dialogue does not. As text, it is a reason that a model understands.
+/// A statement of a caption that its dialogue does not support. Its text is a reason that a model understands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CaptionFault {
-    /// It names an object that was said not to be there, or says of one that it is not there: a caption only says what
-    /// is there.
+    /// It names an object that an answer denied, or denies one itself: a caption should only list objects that are
+    /// there.
     Denied {
         /// As the caption names it.
         name: String,
     },
-    /// It names an object of which no answer was sure.
+    /// It names an object that every answer left unsure.
     Unsure {
         /// As the caption names it.
         name: String,
@@ -39,10 +39,10 @@ impl fmt::Display for CaptionFault {
     }
 }
 
-/// What a text says that the sightings of its dialogue do not support, each name once.
+/// The objects of a text that the sightings of its dialogue do not support, each name once.
 ///
-/// Objects are words that the lexicon or a sighting names. Walls, floors and ceilings are not looked at, nor are rooms; a name
-/// that may mean a room as well is taken for one where the text begins with it ("A staircase with a window").
+/// Objects are words that the lexicon or a sighting names. Walls, floors, ceilings and rooms are not checked. A name
+/// that can also mean a room counts as one if the text begins with it ("A staircase with a window").
 #[must_use]
 pub fn caption_faults(text: &str, sightings: &[Sighting]) -> Vec<CaptionFault> {
     let known: BTreeSet<String> = sightings.iter().map(|sighting| normal(&sighting.name)).collect();
@@ -56,7 +56,7 @@ pub fn caption_faults(text: &str, sightings: &[Sighting]) -> Vec<CaptionFault> {
     found
 }
 
-/// Whether a text is just a name, or begins with it and a "with".
+/// Whether a text consists of just a name, or begins with the name and "with".
 fn begins_with_room(text: &str, name: &str) -> bool {
     let text = words(text);
     let name = words(name);
@@ -85,7 +85,7 @@ fn fault(mention: &Mention, sightings: &[Sighting]) -> Option<CaptionFault> {
     }
 }
 
-/// Whether something of exactly that name is there: one lamp may be denied on the left and seen on the right.
+/// Whether a thing of exactly this name was seen: a lamp may be denied on the left and seen on the right.
 fn seen_by_name(sightings: &[Sighting], name: &str) -> bool {
     sightings.iter().any(|sighting| sighting.witness == Witness::Seen && normal(&sighting.name) == normal(name))
 }
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_said_may_be_summed_up() {
+    fn caption_faults_accepts_a_faithful_summary() {
         for text in [
             "A bedroom with a bed, a sofa and a red chair.",
             "The picture shows a bedroom. The bed stands against a white wall on a wooden floor.",
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_denied_doubtful_or_never_said_is_a_fault() {
+    fn caption_faults_reports_denied_unsure_and_invented_things() {
         assert_eq!(faults("A bedroom with a bed and a mirror."), ["denied mirror"]);
         assert_eq!(faults("A bedroom with no lamp."), ["denied lamp"]);
         assert_eq!(faults("A bedroom with a bed and a floor lamp."), ["denied floor lamp"]);

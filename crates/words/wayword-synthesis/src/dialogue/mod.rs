@@ -1,7 +1,7 @@
 //! The dialogue about one view: questions, answers, a caption.
 //!
-//! It is a state machine without input or output of its own: it says what it needs, and the caller gives it. So it runs
-//! in the same way with a model, a recording or a test.
+//! A state machine without input or output of its own: [`Dialogue::need`] reports what has to come next, and the caller
+//! supplies it. So the same code runs with a model, a recording or a test.
 
 mod answers;
 mod clean;
@@ -34,10 +34,10 @@ pub const QUESTIONS: usize = 9;
 pub trait Asker: Send + Sync {
     /// `rules`, or `provider/model`.
     fn name(&self) -> &str;
-    /// The next question after what was said so far, or `None` where nothing is left to ask.
+    /// The next question after this transcript, or `None` if there is none left to ask.
     ///
     /// # Errors
-    /// When the model that chooses it gives nothing.
+    /// When the model that chooses it fails.
     fn next_question(&self, transcript: &[Exchange]) -> Result<Option<String>, ModelError>;
 }
 
@@ -45,17 +45,17 @@ pub trait Asker: Send + Sync {
 pub trait Summariser: Send + Sync {
     /// `rules`, or `provider/model`.
     fn name(&self) -> &str;
-    /// A caption of what `answerer` said. It holds no object that was denied.
+    /// A caption of the answers that `answerer` gave. It names no object that an answer denied.
     ///
     /// # Errors
-    /// When the model that writes it gives nothing.
+    /// When the model that writes it fails.
     fn sum_up(&self, transcript: &[Exchange], answerer: &str) -> Result<Caption, ModelError>;
 
     /// Condenses captions of one place, each with its direction in words ("north"), into one description of fewer than
     /// `fewer_words_than` words. The result names who made it, where that is not this summariser.
     ///
     /// # Errors
-    /// When the model that writes it gives nothing.
+    /// When the model that writes it fails.
     fn condense(&self, captions: &[(&str, &Caption)], fewer_words_than: usize) -> Result<Condensed, ModelError>;
 }
 
@@ -64,7 +64,7 @@ pub trait Summariser: Send + Sync {
 pub struct Condensed {
     /// The description.
     pub text: String,
-    /// Who made it, where the summariser failed and another did.
+    /// The name of who made it, if the summariser failed and another took over.
     pub by: Option<String>,
 }
 
@@ -87,7 +87,7 @@ pub enum Mode {
     },
 }
 
-/// What a dialogue needs next.
+/// The next thing that a dialogue needs from its caller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Need {
     /// A question from the asker: give it to [`Dialogue::ask`].
@@ -104,7 +104,7 @@ pub struct Dialogue {
     mode: Mode,
     pending: Option<Pending>,
     exhausted: bool,
-    /// Rounds in a row that brought nothing new.
+    /// Number of consecutive rounds without news.
     stale: usize,
     transcript: Vec<Exchange>,
 }
@@ -113,7 +113,7 @@ pub struct Dialogue {
 #[derive(Debug, Clone)]
 struct Pending {
     question: String,
-    /// Why the first answer could not be used, where there was one.
+    /// Why the first answer was unusable, if there was one.
     trouble: Option<Trouble>,
 }
 
@@ -122,7 +122,7 @@ pub(crate) fn is_opening(question: &str) -> bool {
     question == OPENING || question == trouble::rephrased(OPENING)
 }
 
-/// After this many rounds in a row that bring nothing new, the asking ends.
+/// The asking ends after this many consecutive rounds without news.
 const STALE_ROUNDS: usize = 2;
 
 impl Dialogue {
@@ -138,7 +138,7 @@ impl Dialogue {
         dialogue
     }
 
-    /// What it needs next.
+    /// The next thing that the dialogue needs.
     #[must_use]
     pub fn need(&self) -> Need {
         match &self.pending {
@@ -149,8 +149,8 @@ impl Dialogue {
         }
     }
 
-    /// Takes the asker's question, with whatever a model has put around it. `None`, a text without a question, or a
-    /// question that was asked before in the same words ends the asking.
+    /// Takes the asker's question, even with text that a model put around it. The asking ends on `None`, on a text
+    /// without a question, and on a question with the same words as an earlier one.
     pub fn ask(&mut self, question: Option<String>) {
         let question = question.and_then(|question| clean::question(&question));
         let is_new = |question: &String| {
@@ -160,8 +160,8 @@ impl Dialogue {
         self.put(question);
     }
 
-    /// Takes the answer to the pending question. Where the answer cannot be used, the dialogue asks the same question
-    /// once more, in other words.
+    /// Takes the answer to the pending question. If the answer is unusable (empty, a refusal, an echo), the dialogue
+    /// asks the same question once more in other words.
     pub fn answer(&mut self, answer: &str) {
         let Some(Pending { question, trouble }) = self.pending.take() else { return };
         let asked = if trouble.is_some() { trouble::rephrased(&question) } else { question.clone() };
@@ -177,12 +177,12 @@ impl Dialogue {
         self.go_on();
     }
 
-    /// Decides what follows an exchange.
+    /// Decides whether the dialogue goes on after an exchange.
     fn go_on(&mut self) {
         match self.mode {
             Mode::Dialogue { questions } => {
-                // The first two exchanges do not count: the opening has nothing before it, and the first question is
-                // often a formality (which room it is).
+                // The first two exchanges do not count: the opening has no exchange before it, and the first question
+                // is often a formality (which room it is).
                 let counts = self.transcript.len() > 2 && !news::is_new(&self.transcript);
                 self.stale = if counts { self.stale + 1 } else { 0 };
                 self.exhausted = self.transcript.len() > questions || self.stale >= STALE_ROUNDS;
@@ -193,13 +193,13 @@ impl Dialogue {
         }
     }
 
-    /// Puts a question; without one nothing more is asked.
+    /// Sets the question that waits for an answer; `None` ends the asking.
     fn put(&mut self, question: Option<String>) {
         self.exhausted = question.is_none();
         self.pending = question.map(|question| Pending { question, trouble: None });
     }
 
-    /// What was said so far.
+    /// The questions and answers so far.
     #[must_use]
     pub fn transcript(&self) -> &[Exchange] {
         &self.transcript
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn what_models_add_to_questions_and_answers_is_taken_off() {
+    fn additions_of_models_to_questions_and_answers_are_removed() {
         let mut dialogue = Dialogue::new(Mode::Dialogue { questions: 1 });
         dialogue.answer("A bed.\nQuestion: Is there a lamp? Answer: Yes.");
         dialogue.ask(Some("Sure! Question: \"Is there a rug?\" Answer: no".to_owned()));
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_description_is_asked_for_and_no_asker() {
+    fn single_mode_asks_for_a_description_only() {
         assert_eq!(run(Mode::Single, |_| panic!("no asker has a say here")), [OPENING]);
     }
 }

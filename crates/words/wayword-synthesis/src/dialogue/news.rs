@@ -1,4 +1,4 @@
-//! Whether an exchange brings anything new.
+//! Decides whether an exchange brings new information; a dialogue without news is ended early.
 
 use super::answers::{Asked, asked, room, sightings};
 use std::collections::BTreeSet;
@@ -9,8 +9,8 @@ use wayword_language::{
     text::words,
 };
 
-/// Whether the last exchange of a transcript changes what the whole says of things or the room, settles a doubt, or has
-/// a word that neither its question nor anything before it had.
+/// Whether the last exchange of a transcript changes the sightings or the room, settles a doubt, or has a word that
+/// neither its question nor any earlier exchange contains.
 pub(super) fn is_new(transcript: &[Exchange]) -> bool {
     let Some((last, before)) = transcript.split_last() else { return false };
     if last.answer.is_empty() {
@@ -27,8 +27,8 @@ pub(super) fn is_new(transcript: &[Exchange]) -> bool {
         || settles_a_doubt(last, before)
 }
 
-/// Whether the exchange is the first to ask directly whether a thing is there, and has an answer. A confirmed object is
-/// worth knowing, even where it changes nothing.
+/// Whether the exchange is the first to ask directly for a thing, and is answered. A confirmed object is worth knowing
+/// even if no sighting changes.
 fn settles_a_doubt(last: &Exchange, before: &[Exchange]) -> bool {
     let doubted = |exchange: &Exchange| match asked(&exchange.question) {
         Asked::Presence { wanted, .. } => wanted.into_iter().map(|wanted| wanted.name).collect(),
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_said_before_is_no_news() {
+    fn repeated_information_is_no_news() {
         let opening = ("Describe.", "There is a bed and a red chair.");
         for last in [
             ("What else is there?", "I am not sure."),

@@ -1,4 +1,4 @@
-//! The asker that works by rules.
+//! The asker that works by rules: a fixed order of questions about the room, doubtful things, usual things and colours.
 
 use super::{
     Asker,
@@ -7,13 +7,13 @@ use super::{
 use wayword_core::{Exchange, ModelError, Sighting, Witness};
 use wayword_language::lexicon::{Class, agree, is_plural, plural, room_name, thing, with_article};
 
-/// Asks which room it is; whether what the opening named is really there, where that may be doubted; whether there is
-/// what such a room usually has and no answer named; and which colours landmarks have.
+/// Asks which room it is; whether objects of the first description are really there, if that may be doubted; whether
+/// there are things that a room of this kind usually has and no answer mentioned; and the colours of landmarks.
 ///
-/// The default doubts nothing, which suits an answerer that names only what is there, as `labels` does.
+/// The default asks about no doubts, which suits an answerer that names only real things, as `labels` does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesAsker {
-    /// Most objects of the opening that it asks about again, to learn whether they are really there.
+    /// Most objects of the first description that it asks about again, to learn whether they are really there.
     doubts: usize,
 }
 
@@ -22,19 +22,19 @@ pub struct RulesAsker {
 const DOUBTS: usize = 6;
 
 impl RulesAsker {
-    /// An asker for an answerer that may name what is not there.
+    /// An asker for an answerer that may name objects that are not there.
     #[must_use]
     pub fn for_models() -> Self {
         Self { doubts: DOUBTS }
     }
 }
 
-/// Most objects whose presence is asked about: a "no" is evidence too, but each costs a question.
+/// Most objects that it asks for on its own. A "no" is evidence too, but each costs a question.
 const PROBES: usize = 3;
-/// Most landmarks whose colour is asked for.
+/// Most landmarks of which it asks the colour.
 const COLOURS: usize = 2;
 
-/// What rooms usually have; asked for where no answer named it.
+/// Things that rooms usually have. The asker asks for those that no answer mentioned.
 const USUAL: &[(&str, &[&str])] = &[
     ("bedroom", &["bed", "wardrobe", "nightstand", "mirror"]),
     ("bathroom", &["sink", "mirror", "bathtub", "toilet"]),
@@ -49,7 +49,7 @@ const USUAL: &[(&str, &[&str])] = &[
     ("laundry room", &["washing machine", "dryer", "sink"]),
     ("gym", &["treadmill", "mirror", "tv"]),
 ];
-/// What is asked for where the room is none of these.
+/// Things to ask for in any other room.
 const USUAL_ANYWHERE: &[&str] = &["table", "chair", "stairs"];
 
 impl Asker for RulesAsker {
@@ -74,7 +74,8 @@ impl Asker for RulesAsker {
     }
 }
 
-/// Questions whether what the opening named is there, the most salient first. Walls, doors and small things get none.
+/// Questions whether the things of the first description are really there, the most salient first. Walls, doors and
+/// small things get none.
 fn doubts(transcript: &[Exchange]) -> Vec<String> {
     let opening = transcript.get(..1).unwrap_or_default();
     let named = sightings(opening, "");
@@ -123,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn it_looks_for_what_the_room_usually_has_and_nobody_named() {
+    fn asker_probes_for_usual_things_that_no_answer_named() {
         let mut transcript = vec![
             exchange(super::super::OPENING, "There is a bed in the middle and a lamp on the left."),
             exchange("Which room is this?", "It is a bedroom."),
@@ -143,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_model_named_is_doubted_the_most_salient_first() {
+    fn asker_doubts_named_things_by_salience() {
         let mut transcript = vec![
             exchange(super::super::OPENING, "A bedroom with two lamps, a bed, a white wall and a mirror."),
             exchange("Which room is this?", "It is a bedroom."),
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn no_more_things_are_doubted_than_questions_are_set_apart_for_it() {
+    fn asker_doubts_at_most_the_set_number_of_things() {
         let opening = "There is a bed, a mirror, a lamp, a rug, a desk, a sofa, a piano, a stove and a tree.";
         let mut transcript = vec![exchange(super::super::OPENING, opening)];
         while let Some(question) = RulesAsker::for_models().next_question(&transcript).unwrap() {

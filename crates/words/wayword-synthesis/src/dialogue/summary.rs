@@ -1,4 +1,4 @@
-//! The summariser that works by rules.
+//! The summariser that works by rules: it lists the sightings of a dialogue in one sentence.
 
 use super::{
     Condensed, Summariser,
@@ -11,8 +11,8 @@ use wayword_language::{
     text::{capital, word_count},
 };
 
-/// Writes a caption from what was said to be there, and leaves out what was denied or not known: [`caption_faults`] finds nothing
-/// in it.
+/// Writes a caption of the things that answers affirmed, and leaves out denied and doubtful ones, so that
+/// [`caption_faults`] is empty for it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesSummariser;
 
@@ -34,8 +34,8 @@ impl Summariser for RulesSummariser {
     }
 }
 
-/// The caption of what was seen. Names may be any words, and two names side by side may read as a third. So names that
-/// would make a fault are left out, and in the end the room too.
+/// The caption of the seen things. Names may be any words, and two adjacent names may read as a third. So names that
+/// would cause a fault are left out, and as a last resort the room too.
 pub(crate) fn caption_of(room: Option<&str>, told: &[Sighting]) -> String {
     let is_denied = |seen: &Sighting| told.iter().any(|other| denies(other, &seen.name, seen.colour.as_deref()));
     let mut seen: Vec<&Sighting> =
@@ -75,8 +75,8 @@ fn enumerate(items: &[String]) -> String {
     }
 }
 
-/// Several captions of one place as one description of under `fewer_words_than` words: the room, then the landmarks that
-/// stand out most (arXiv 2403.11487 condenses four captions to under 20 words).
+/// Several captions of one place as one description of under `fewer_words_than` words: the room, then the most salient
+/// things (arXiv 2403.11487 condenses four captions to under 20 words).
 fn condense(captions: &[&Caption], fewer_words_than: usize) -> String {
     let room = captions.iter().find_map(|caption| caption.room.as_deref());
     let seen =
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_denied_is_not_in_the_caption_but_is_kept() {
+    fn a_denied_thing_is_a_sighting_but_not_in_the_caption() {
         let transcript = [
             exchange(super::super::OPENING, "There is a bed in the middle and a mirror on the left."),
             exchange("Which room is this?", "It is a bedroom."),
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_denial_of_the_kind_takes_its_members_out_and_one_of_a_member_leaves_the_kind() {
+    fn a_denial_of_a_kind_covers_its_members_but_not_the_reverse() {
         let opening = exchange(super::super::OPENING, "There are two dining chairs, a table and a red sofa.");
         let text = |question: &str, answer: &str| {
             RulesSummariser.sum_up(&[opening.clone(), exchange(question, answer)], "test").unwrap().text

@@ -1,4 +1,4 @@
-//! Answers that cannot be used, and how such a question is asked again.
+//! Recognises unusable answers (empty, refusal, echo, loop, repeat), and words the question anew.
 
 use wayword_core::{Exchange, Trouble};
 use wayword_language::{
@@ -8,15 +8,15 @@ use wayword_language::{
 
 /// Longest phrase, in words, of an answer that repeats itself.
 const LOOP_WORDS: usize = 8;
-/// How often the answer has to say the phrase.
+/// How often the answer has to repeat the phrase.
 const LOOP_TIMES: usize = 3;
 /// Fewer words than this may well be the answer to two questions ("They are made of wood").
 const REPEAT_WORDS: usize = 6;
 
-/// How many words of an answer tell whether it is a refusal.
+/// How many words at the beginning of an answer are examined for a refusal.
 const REFUSAL_WORDS: usize = 40;
 
-/// Why an answer cannot be used, where it cannot.
+/// The reason why an answer is unusable; `None` if it is usable.
 pub(super) fn trouble(question: &str, answer: &str, before: &[Exchange]) -> Option<Trouble> {
     let said = words(&answer.replace('’', "'"));
     if said.is_empty() {
@@ -32,7 +32,7 @@ pub(super) fn trouble(question: &str, answer: &str, before: &[Exchange]) -> Opti
     }
 }
 
-/// Whether a model refuses to look, instead of answering. "Sorry, I can't see a bed" is an answer.
+/// Whether a model refuses to look at the picture. "Sorry, I can't see a bed" is an answer and no refusal.
 pub(crate) fn refuses(answer: &str) -> bool {
     is_refusal(&words(&answer.replace('’', "'")))
 }
@@ -45,12 +45,12 @@ fn is_refusal(said: &[String]) -> bool {
     begins && ((0..looked_at.len()).any(declines) || is_bare())
 }
 
-/// Whether a phrase stands at this place.
+/// Whether a phrase begins at this word.
 fn is_at(said: &[String], at: usize, phrase: &[&str]) -> bool {
     said.len() >= at + phrase.len() && said[at..].iter().zip(phrase).all(|(said, word)| said == word)
 }
 
-/// The question once more, in other words.
+/// The question in other words, for a second try.
 pub(crate) fn rephrased(question: &str) -> String {
     if question == super::OPENING {
         return "Look at the picture again and say in one sentence which room and which objects it shows.".to_owned();
@@ -58,7 +58,7 @@ pub(crate) fn rephrased(question: &str) -> String {
     format!("Look again and answer in one short sentence: {question}")
 }
 
-/// Whether the answer is the question itself, once or more, or most of its words in a row, and nothing else.
+/// Whether the answer only repeats the question, once or more, or most of its words in a row.
 fn is_echo(asked: &[String], said: &[String]) -> bool {
     if asked.is_empty() {
         return false;
@@ -68,7 +68,7 @@ fn is_echo(asked: &[String], said: &[String]) -> bool {
     again || part
 }
 
-/// Whether a run of up to eight words, said at least three times in a row, makes up most of the answer.
+/// Whether a run of up to eight words, repeated at least three times in a row, makes up most of the answer.
 fn is_loop(said: &[String]) -> bool {
     (1..=LOOP_WORDS.min(said.len() / LOOP_TIMES)).any(|length| {
         let mut longest = 0;
@@ -151,7 +151,7 @@ mod tests {
         }
 
         #[test]
-        fn what_is_said_three_times_and_nothing_else_is_a_loop(phrase in "[a-z]{1,5}( [a-z]{1,5}){0,7}", times in 3_usize..9) {
+        fn a_phrase_repeated_three_times_is_a_loop(phrase in "[a-z]{1,5}( [a-z]{1,5}){0,7}", times in 3_usize..9) {
             let said = vec![phrase; times].join(", ");
             prop_assert_eq!(trouble("Which one?", &said, &[]), Some(Trouble::Loop));
         }

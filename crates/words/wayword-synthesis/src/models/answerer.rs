@@ -1,4 +1,4 @@
-//! A language model that sees.
+//! A vision-language model as the answerer.
 
 use super::{PERCEPTION_SEED, clean::whole_sentences};
 use crate::{
@@ -11,9 +11,9 @@ use wayword_core::{
     Answer, AnswerForm, Answerer, Ask, Finish, LanguageModel, Message, ModelError, Reply, Request, Sampling,
 };
 
-/// Puts questions about a view's picture to a language model that sees. An answer in words that is cut off is asked for
-/// once more, shorter; of the second one the whole sentences are taken. Who asks sees to refusals and to JSON that is cut
-/// off.
+/// Puts questions about a view's picture to a vision-language model. An answer in words that was cut off is asked for
+/// once more, shorter; from the second one the whole sentences are taken. The caller handles refusals and JSON that was
+/// cut off.
 #[derive(Clone)]
 pub struct ModelAnswerer {
     model: Arc<dyn LanguageModel>,
@@ -21,10 +21,10 @@ pub struct ModelAnswerer {
     manner: Manner,
 }
 
-/// The likeliest answer, because what is in a picture does not change with a random draw.
+/// Temperature 0: the content of a picture does not depend on a random draw.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 160, seed: PERCEPTION_SEED };
 
-/// Room for the JSON of about twenty things.
+/// Enough tokens for the JSON of about twenty things.
 const OF_JSON: Sampling = Sampling { max_tokens: 1_000, ..SAMPLING };
 
 impl ModelAnswerer {

@@ -5,7 +5,7 @@ use crate::{dialogue::Asker, prompts::Prompts};
 use std::sync::Arc;
 use wayword_core::{Exchange, LanguageModel, Message, ModelError, Sampling};
 
-/// Lets a language model choose the questions. The dialogue cleans what it says.
+/// Lets a language model choose the questions. The dialogue extracts the question from its reply.
 #[derive(Clone)]
 pub struct ModelAsker {
     model: Arc<dyn LanguageModel>,

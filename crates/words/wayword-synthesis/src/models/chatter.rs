@@ -1,4 +1,4 @@
-//! What a model says around the text that it was asked for, and replies that are no text but a refusal.
+//! Removes the chatter around a text that a model was asked for ("Sure! Here is ..."), and recognises refusals.
 
 use wayword_language::{
     Phrases,
@@ -8,15 +8,15 @@ use wayword_language::{
 
 /// Most words of a sentence that announces a text.
 const ANNOUNCING_WORDS: usize = 24;
-/// How much of a sentence is looked at, bytes: its beginning tells what it is.
+/// How much of a sentence is examined, bytes. Its beginning is enough to classify it.
 const LOOKED_AT: usize = 300;
 
-/// A text without code fences around it, sentences that announce it, and sentences behind it that are no part of it.
+/// The text without code fences, announcing sentences before it, and remarks after it.
 pub(super) fn without_chatter(text: &str) -> &str {
     let text = without_fence(text);
     let sentences = sentences(text);
     let before = sentences.iter().take_while(|sentence| announces(sentence)).count();
-    // A reply of nothing but chatter stays as it is: whoever asked sees that it is no text.
+    // A reply of chatter alone stays as it is: the caller recognises that it is unusable.
     let Some(first) = sentences.get(before) else { return text };
     let behind = sentences.iter().skip(before + 1).find(|sentence| parts(sentence));
     let start = offset(text, first);
@@ -30,7 +30,7 @@ pub(super) fn refuses(text: &str) -> bool {
     begins(&said, &REFUSING)
 }
 
-/// What stands in the first code fence, without the name of its language.
+/// The content of the first code fence, without the name of its language.
 fn without_fence(text: &str) -> &str {
     const FENCE: &str = "```";
     let Some((_, inside)) = text.split_once(FENCE) else { return text };
@@ -67,7 +67,7 @@ fn offset(text: &str, part: &str) -> usize {
     part.as_ptr() as usize - text.as_ptr() as usize
 }
 
-/// Whether a sentence only says that a text follows.
+/// Whether a sentence only announces a text.
 fn announces(sentence: &str) -> bool {
     let said = spoken(sentence);
     let said: &[String] = match agreeing(&said) {
@@ -80,14 +80,14 @@ fn announces(sentence: &str) -> bool {
     names_text && said.len() <= ANNOUNCING_WORDS && (leads || begins(said, &ANNOUNCING))
 }
 
-/// Whether a sentence behind a text is no part of it: a remark, or a count of its words.
+/// Whether a sentence after a text does not belong to it: a remark, or a count of its words.
 fn parts(sentence: &str) -> bool {
     let said = spoken(sentence);
     let counts = sentence.starts_with('(') && said.iter().any(|word| word == "words" || word == "note");
     counts || begins(&said, &PARTING)
 }
 
-/// How many words at the beginning only say yes.
+/// Number of words at the beginning that only express agreement ("Sure", "Of course").
 fn agreeing(said: &[String]) -> usize {
     let longest = |from: usize| {
         let fits = AGREEING.iter().filter(|phrase| said[from..].iter().take(phrase.len()).eq(phrase.iter()));
@@ -111,7 +111,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn what_stands_around_a_text_is_taken_off() {
+    fn without_chatter_removes_announcements_and_remarks() {
         for (told, wanted) in [
             ("Sure! Here is the instruction: Go to the sink.", "Go to the sink."),
             (

@@ -1,4 +1,4 @@
-//! Takes from a model's reply what was asked for.
+//! Takes the wanted text out of a model's reply: whole sentences only, without labels, quotes and emphasis.
 
 use super::chatter::without_chatter;
 use wayword_core::{Finish, Reply};

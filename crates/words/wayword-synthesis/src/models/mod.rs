@@ -1,7 +1,7 @@
-//! The roles of asking, seeing, summing up and writing, played by a language model with our prompts.
+//! The roles of asking, seeing, summarising and writing, played by a language model with our prompts.
 //!
-//! Calls about views have a seed of their own, the same in every run, so that a view that a model has already talked
-//! about is not paid for again.
+//! Calls about views use the same seed in every run, so that the ledger has the answers about a view that was already
+//! paid for.
 
 mod answerer;
 mod asker;

@@ -1,4 +1,4 @@
-//! A language model that summarises dialogues, and is checked against what was said.
+//! A language model that summarises dialogues. Its captions are checked against the sightings of the dialogue.
 
 use super::{
     PERCEPTION_SEED,
@@ -16,8 +16,9 @@ use wayword_core::{
 };
 use wayword_language::{lexicon::agree, text::word_count};
 
-/// Lets a language model summarise. If a caption names what was denied, or what no answer named, or if it is a refusal or cut
-/// off, the model is asked once more, with the reason. If it fails again, rules summarise, and the caption says so.
+/// Lets a language model summarise. If a caption names a denied object or one that no answer named, or if it is a
+/// refusal or cut off, the model is asked once more, with the reason. If it fails again, rules summarise, and the
+/// caption records that.
 #[derive(Clone)]
 pub struct ModelSummariser {
     model: Arc<dyn LanguageModel>,
@@ -52,7 +53,7 @@ impl ModelSummariser {
                     vec![format!("it has {bytes} bytes, more than {LONGEST_TEXT_BYTES}")]
                 }
                 _ if refuses(&text) => vec!["it refused to describe the picture".to_owned()],
-                // The whole sentences of the last attempt are better than what rules make of the answers.
+                // The whole sentences of the last attempt are better than a summary by rules.
                 _ if reply.finish == Finish::Length && attempt < ATTEMPTS => {
                     vec!["it was cut off: write a shorter one".to_owned()]
                 }
@@ -105,7 +106,7 @@ impl Summariser for ModelSummariser {
     }
 }
 
-/// Who summarises instead of a model, and why.
+/// The note that rules summarised instead of a model, with the reasons.
 fn instead(reasons: &[String]) -> String {
     format!("rules, because {}", reasons.join("; "))
 }
@@ -114,8 +115,8 @@ fn faults(text: &str, told: &[Sighting]) -> Vec<String> {
     caption_faults(text, told).iter().map(ToString::to_string).collect()
 }
 
-/// What was said of any direction. A thing that one view lacks may be in the next, so a denial counts only where no
-/// view shows the thing.
+/// The sightings of all directions. A thing that one view lacks may be in the next, so a denial counts only if no view
+/// shows the thing.
 fn together(captions: &[(&str, &Caption)]) -> Vec<Sighting> {
     let all: Vec<&Sighting> = captions.iter().flat_map(|(_, caption)| &caption.sightings).collect();
     let seen = |name: &str| all.iter().any(|other| other.witness == Witness::Seen && agree(&other.name, name));

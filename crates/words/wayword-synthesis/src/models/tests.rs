@@ -54,7 +54,7 @@ fn transcript() -> Vec<Exchange> {
 }
 
 #[test]
-fn a_summary_that_names_what_was_denied_is_written_again_with_the_reason() {
+fn a_summary_with_a_denied_thing_is_requested_again_with_the_reason() {
     let model = Scripted::new(&["A bedroom with a bed and a mirror.", "Summary: A bedroom with a bed."]);
     let caption = ModelSummariser::new(model.clone(), prompts()).sum_up(&transcript(), "test").unwrap();
     assert_eq!((caption.text.as_str(), caption.by), ("A bedroom with a bed.", None));
@@ -63,7 +63,7 @@ fn a_summary_that_names_what_was_denied_is_written_again_with_the_reason() {
 }
 
 #[test]
-fn a_summary_that_stays_wrong_is_left_to_rules_and_says_so() {
+fn a_summary_that_stays_wrong_is_written_by_rules() {
     let model = Scripted::new(&["A bed and a mirror.", "A bed, a mirror and a piano."]);
     let caption = ModelSummariser::new(model, prompts()).sum_up(&transcript(), "test").unwrap();
     assert_eq!(caption.text, "A bedroom with a bed in the middle.");
@@ -72,7 +72,7 @@ fn a_summary_that_stays_wrong_is_left_to_rules_and_says_so() {
 }
 
 #[test]
-fn a_condensed_description_is_short_and_holds_what_any_direction_shows() {
+fn a_condensed_description_is_short_and_covers_all_directions() {
     let long = "There is a bed and there is a bed and there is a bed and there is a bed and there is a bed.";
     let model = Scripted::new(&[long, "A bedroom with a bed."]);
     let summariser = ModelSummariser::new(model.clone(), prompts());
@@ -83,7 +83,7 @@ fn a_condensed_description_is_short_and_holds_what_any_direction_shows() {
 }
 
 #[test]
-fn a_condensed_description_that_stays_wrong_is_left_to_rules_and_says_so() {
+fn a_condensed_description_that_stays_wrong_is_written_by_rules() {
     let model = Scripted::new(&["A piano.", "A piano and a bed."]);
     let caption = crate::dialogue::RulesSummariser.sum_up(&transcript(), "test").unwrap();
     let condensed = ModelSummariser::new(model, prompts()).condense(&[("ahead", &caption)], 20).unwrap();
@@ -101,7 +101,7 @@ fn a_model_asks_with_the_dialogue_so_far() {
 }
 
 #[test]
-fn a_model_is_shown_the_picture_and_asked_again_where_it_is_cut_off() {
+fn answerer_sends_the_picture_and_repeats_cut_answers() {
     let cut = || Ok(Reply { text: "A bed. A lamp and a".to_owned(), finish: Finish::Length, usage: None });
     let model = Scripted::with(vec![cut(), cut()]);
     let eye = ModelAnswerer::new(model.clone(), prompts(), Manner::Chat);
@@ -141,7 +141,7 @@ fn a_summary_of_two_megabytes_is_left_to_rules() {
 }
 
 #[test]
-fn what_a_model_does_not_do_is_told() {
+fn errors_of_a_model_are_passed_on() {
     let stop =
         ModelError::Stopped { reason: "the budget is spent".into(), hint: "raise --max-usd".into(), is_lost: false };
     let model = Scripted::with(vec![Err(stop.clone())]);
@@ -167,7 +167,7 @@ fn a_refusal_is_no_text_and_a_writer_that_sees_gets_the_pictures() {
 }
 
 #[test]
-fn a_summary_that_was_cut_off_is_asked_again_and_then_kept_as_far_as_it_goes() {
+fn a_cut_summary_is_requested_again_and_then_used_in_part() {
     let cut = || Ok(Reply { text: "A bedroom with a bed. In the".to_owned(), finish: Finish::Length, usage: None });
     let model = Scripted::with(vec![cut(), cut()]);
     let caption = ModelSummariser::new(model.clone(), prompts()).sum_up(&transcript(), "test").unwrap();

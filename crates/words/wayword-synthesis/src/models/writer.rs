@@ -8,7 +8,7 @@ use crate::{
 use std::sync::Arc;
 use wayword_core::{Finish, LONGEST_TEXT_BYTES, LanguageModel, Message, ModelError, Sampling};
 
-/// Lets a language model write. Its prompt says what was wrong with earlier texts.
+/// Lets a language model write. Its prompt includes the reasons why earlier texts failed.
 #[derive(Clone)]
 pub struct ModelWriter {
     model: Arc<dyn LanguageModel>,
@@ -19,7 +19,7 @@ pub struct ModelWriter {
 const TEMPERATURE: f64 = 0.7;
 /// Room for the longest instruction of a fine-grained style.
 const MAX_TOKENS: u32 = 300;
-/// What the next prompt shows of a text that is too long, bytes.
+/// How much of an over-long text the next prompt shows, bytes.
 const SHOWN_BYTES: usize = 500;
 
 impl ModelWriter {

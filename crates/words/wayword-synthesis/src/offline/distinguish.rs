@@ -1,9 +1,9 @@
-//! What the views of one frame list, where nothing is known of the rest of the building.
+//! The listing of objects around one frame, for platforms that know no more of the building.
 
 use super::Listing;
 use wayword_core::{Frame, View};
 
-/// The objects that are listed in the views around a frame.
+/// Lists the objects that the labels of the views around a frame contain.
 #[must_use]
 pub fn around(frame: &Frame, views: &[View]) -> Listing {
     Listing::around(frame, views.iter().filter_map(View::ground_truth).flat_map(|truth| &truth.labels))

@@ -1,7 +1,9 @@
-//! Answers from ground truth. It is called `labels` wherever it takes part, because it perceives nothing.
+//! Answers questions from ground-truth labels instead of looking. It is called `labels` in every record, because it
+//! perceives nothing.
 //!
-//! Labels may reach no farther than two metres. Of a big thing that such a room has, they do not say that it is not there,
-//! unless their platform lists everything, or a calibration says otherwise.
+//! Some datasets label only things within two metres. So for a big thing that a room of this kind usually has, a
+//! missing label means "not sure" and not "no", unless the platform lists everything or a calibration decides
+//! otherwise.
 
 use super::listed::listed;
 use crate::dialogue::{Asked, Wanted, asked};
@@ -13,9 +15,9 @@ use wayword_language::lexicon::{agree, counted, normal, plural, same_room, with_
 /// The answerer that reads a view's labels.
 #[derive(Debug, Clone, Default)]
 pub struct Labels {
-    /// Whether labels list everything that is seen in a view: then what they do not list is not there.
+    /// Whether the labels contain everything that can be seen in a view, so that a missing label means absence.
     pub list_everything: bool,
-    /// What the user's own data says of single names.
+    /// For single names, whether the user's own data treats a missing label as absence.
     pub calibration: Option<Arc<Calibration>>,
 }
 
@@ -56,7 +58,7 @@ impl Labels {
         })
     }
 
-    /// "Yes, on the left.", "No, there is no lamp."; of several that are asked for, which are there.
+    /// "Yes, on the left.", "No, there is no lamp."; for several things, which of them are there.
     fn presence(&self, view: &View, truth: &GroundTruth, wanted: &[Wanted], or: bool) -> Answer {
         let found: Vec<(&Wanted, Option<&Label>)> =
             wanted.iter().map(|wanted| (wanted, find(view, truth, wanted))).collect();
@@ -87,8 +89,8 @@ impl Labels {
         }
     }
 
-    /// Whether labels leave open that there is such a thing. They do not where they list one of another colour or in another
-    /// part of the view.
+    /// Whether the labels leave open that the thing is there. They do not if they contain one of another colour or in
+    /// another part of the view.
     fn is_open(&self, truth: &GroundTruth, wanted: &Wanted) -> bool {
         let is_listed = truth.labels.iter().any(|label| agree(&label.name, &wanted.name));
         if self.list_everything || is_listed {
@@ -214,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn it_tells_what_is_there_and_what_is_not() {
+    fn labels_affirm_and_deny() {
         assert_eq!(
             ask(crate::dialogue::OPENING),
             "There is a sofa in the middle, two lamps on the left and an oven on the right."
@@ -249,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_room_has_beyond_the_reach_of_labels_is_not_denied() {
+    fn labels_leave_usual_things_of_a_room_open() {
         let known = view();
         let mut truth = known.ground_truth().unwrap().clone();
         truth.room = Some("dining room".into());
@@ -268,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn where_labels_list_everything_nothing_else_is_there() {
+    fn complete_labels_deny_unlisted_things() {
         let known = view();
         let mut truth = known.ground_truth().unwrap().clone();
         truth.room = Some("dining room".into());
@@ -291,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn without_labels_it_says_so() {
+    fn a_view_without_labels_is_an_error() {
         let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.0, None, None);
         let error = Labels::default()
             .answer(&[Ask { view: &blind, question: "Which room is this?", history: &[], answer: AnswerForm::Words }])

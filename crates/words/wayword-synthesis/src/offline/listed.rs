@@ -1,4 +1,4 @@
-//! A view's labels in the form of a structured answer.
+//! Writes the labels of a view as the JSON of a structured answer, so that labels can stand in for a model.
 
 use super::labels::third;
 use crate::seeing::FAR_M;
@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use wayword_core::{GroundTruth, Label, View, Where};
 use wayword_language::lexicon::{Class, plural, thing};
 
-/// Most things that it lists, the nearest first.
+/// Most things in the answer, the nearest first.
 const MOST_LISTED: usize = 14;
 
-/// What the labels of a view say, as JSON.
+/// The labels of a view as JSON in the form of [`crate::seeing::SCHEMA`].
 pub(super) fn listed(view: &View, truth: &GroundTruth) -> String {
     let mut labels: Vec<(&Label, Where)> = truth.labels.iter().map(|label| (label, third(view, label))).collect();
     let distance = |label: &Label| label.distance_m.unwrap_or(f64::INFINITY);

@@ -1,4 +1,5 @@
-//! What needs no model: answers from ground-truth labels, and rules for how a target differs from everything else.
+//! The parts that need no model: answers from ground-truth labels, and rules that find how a target differs from
+//! similar objects.
 
 mod describe;
 mod distinguish;

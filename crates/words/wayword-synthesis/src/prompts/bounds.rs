@@ -1,9 +1,9 @@
-//! The limits of a user's own prompt: how much text, how many steps, and nothing that grows by itself.
+//! Limits for users' own prompt templates: length of the output, number of steps, and no construct that can grow by
+//! itself.
 //!
-//! minijinja limits the steps of a template (`fuel`), but not the bytes that one step makes: a single `indent` takes as
-//! many gigabytes as its argument says. So this module limits what a prompt writes, within filters too. It offers
-//! nothing that makes a value out of itself (variables, macros, repetition), because forty lines of that fill any
-//! memory.
+//! minijinja limits the steps of a template (`fuel`), but not the bytes that one step makes: a single `indent` fills as
+//! many gigabytes as its argument asks for. So this module also counts what filters make. It offers no construct that
+//! builds a value out of itself (variables, macros, repetition), because forty lines of those fill any memory.
 
 use super::PromptError;
 use minijinja::{
@@ -25,9 +25,9 @@ const MOST_BYTES: usize = 8 << 20;
 const MOST_STEPS: u64 = 200_000;
 /// Most numbers of a `range`.
 const MOST_NUMBERS: usize = 1000;
-/// Most `~` and `+` of a template: each may add what it joins once more.
+/// Most `~` and `+` of a template: each of them may double a text.
 const MOST_JOINS: usize = 64;
-/// What an item of a list takes besides its text, bytes.
+/// Assumed size of a list item besides its text, bytes.
 const ITEM_BYTES: usize = 32;
 
 /// The statements that prompts offer.
@@ -41,7 +41,7 @@ pub(super) fn too_many_steps() -> String {
     format!("it takes more than {MOST_STEPS} steps")
 }
 
-/// Refuses a template that uses something without a bound.
+/// Refuses a template that uses an unlimited construct.
 pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
     let refused = |line: usize, what: String| Err(PromptError::Refused { name: name.to_owned(), line, what });
     if source.len() > SOURCE_BYTES {
@@ -50,7 +50,7 @@ pub(super) fn allow(name: &str, source: &str) -> Result<(), PromptError> {
     let mut joins = 0;
     let mut before = None;
     for token in tokenize(source, false, Default::default(), WhitespaceConfig::default()) {
-        // If this is no template, parsing it says so later.
+        // A syntax error is reported later, by the parser.
         let Ok((token, span)) = token else { return Ok(()) };
         let line = usize::from(span.start_line);
         match (&before, &token) {
@@ -129,7 +129,7 @@ filters! {
     join replace indent tojson string
 }
 
-/// Applies a filter, and counts the bytes of the text that it gets and of what it makes.
+/// Applies a filter, and counts the bytes of its input and output.
 fn counted(state: &State<'_, '_>, filter: &str, value: Value, more: &[Value]) -> Result<Value, Error> {
     if let Some(text) = value.as_str() {
         write(state, text.len())?;
@@ -208,7 +208,7 @@ fn range(lower: isize, upper: Option<isize>, step: Option<isize>) -> Result<Valu
     Ok(numbers)
 }
 
-/// A value as text. A value that is no text is written within the limit.
+/// A value as text; other types are written within the limit.
 fn text_of(state: &State<'_, '_>, value: &Value) -> Result<String, Error> {
     if value.kind() == ValueKind::Undefined {
         return Err(Error::from(ErrorKind::UndefinedError));
@@ -224,7 +224,7 @@ struct Made(AtomicUsize);
 
 impl Object for Made {}
 
-/// Counts bytes that a filter makes.
+/// Counts bytes that a filter makes, and fails beyond the limit.
 fn write(state: &State<'_, '_>, bytes: usize) -> Result<(), Error> {
     let made = state.get_or_set_temp_object("made by filters", Made::default);
     let before = made.0.fetch_add(bytes.min(MOST_BYTES + 1), Ordering::Relaxed);
@@ -255,7 +255,7 @@ impl fmt::Write for Counted<'_, '_, '_> {
     }
 }
 
-/// What a prompt has written.
+/// The output of a prompt, limited in length.
 #[derive(Debug, Default)]
 pub(super) struct Text(Vec<u8>);
 

@@ -1,4 +1,4 @@
-//! Why a text was refused, and what would be right, as far as the walk tells.
+//! Explains to the model why its text failed, and what would be right, as far as the walk shows it.
 
 use super::writing::{frame_of_move, way};
 use crate::writer::{Brief, Complaint};
@@ -8,10 +8,10 @@ use wayword_language::{
     reading::{What, read},
 };
 
-/// Most things of which a sentence says where they are.
+/// Most things in one sentence about where they are.
 const MOST_NAMED: usize = 3;
 
-/// The reasons of a refused text, each with the words it is about and with what would be right.
+/// The reasons why a text failed, each with the words concerned and with a correction.
 pub(super) fn reasons(brief: &Brief<'_>, complaint: &Complaint) -> Vec<String> {
     let failed = complaint.findings.iter().filter(|finding| finding.verdict == Verdict::Fail);
     failed.map(|finding| reason(brief, &complaint.text, finding)).collect()
@@ -29,7 +29,7 @@ fn reason(brief: &Brief<'_>, text: &str, finding: &Finding) -> String {
     }
 }
 
-/// What would be right, where the walk tells it.
+/// The correction for a finding, if the walk shows it.
 fn right(brief: &Brief<'_>, text: &str, finding: &Finding, words: Option<&str>) -> Option<String> {
     if !brief.walk.path.motion.is_known() && matches!(finding.check, Check::Turns | Check::Floors | Check::Order) {
         return None;
@@ -44,7 +44,7 @@ fn right(brief: &Brief<'_>, text: &str, finding: &Finding, words: Option<&str>) 
     }
 }
 
-/// How the walk turns where the text tells this turn; all its turns where the text tells more or fewer.
+/// The turn of the walk that corresponds to this turn of the text; all turns of the walk if the text has more or fewer.
 fn turns(brief: &Brief<'_>, text: &str, span: Option<[usize; 2]>) -> String {
     let moves = brief.walk.moves.iter().enumerate().filter(|(_, step)| step.turn() != Turn::Straight);
     let walked: Vec<(usize, &Move)> = moves.collect();
@@ -77,7 +77,7 @@ fn climbs(moves: &[Move]) -> String {
     if climbs.is_empty() { "the walk stays on one floor".to_owned() } else { climbs.join(", ") }
 }
 
-/// Where the frames show what the words name, and how it looks; what to do if none does.
+/// The frames that show the named thing, and how it looks there; advice if none does.
 fn where_seen(brief: &Brief<'_>, words: &str) -> Option<String> {
     let name = words.trim_start_matches("the ").trim();
     let frames = 0..brief.walk.observations.len();

@@ -1,7 +1,8 @@
-//! Prompts for language models: templates, each of which can be overridden, and what they are filled with.
+//! Prompts for language models: templates, which users can override one by one, and the values that fill them.
 //!
 //! The parts of the writing prompt and their order follow arXiv 2403.11487; the wording is our own. Beyond the paper,
-//! the prompt has measured moves, so that the model guesses no turn, and the reasons why an earlier text was refused.
+//! the prompt contains measured moves, so that the model need not guess turns, and the reasons why an earlier text
+//! failed.
 
 mod bounds;
 mod corrections;
@@ -27,13 +28,13 @@ const BUILT_IN: [(&str, &str); 8] = [
     ("write", include_str!("templates/write.j2")),
 ];
 
-/// The form of prompt that a model that sees expects.
+/// The form of prompt that a vision model expects.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Manner {
-    /// It follows instructions: the prompt says how to answer (`answer`).
+    /// It follows instructions: the prompt explains how to answer (`answer`).
     #[default]
     Chat,
-    /// It takes a bare question, and describes the picture where the prompt is empty (`answer_question`): BLIP.
+    /// It takes a bare question, and describes the picture if the prompt is empty (`answer_question`): BLIP.
     Question,
     /// It continues a text (`answer_completion`): BLIP-2. The form is ChatCaptioner's.
     Completion,
@@ -60,10 +61,10 @@ pub enum PromptError {
     Template {
         /// Which prompt.
         name: String,
-        /// What is wrong with it.
+        /// The fault.
         source: minijinja::Error,
     },
-    /// It uses something that takes memory or time without bound.
+    /// It uses a feature that can take unlimited memory or time.
     #[error("prompt {name}.j2, line {line}: {what}")]
     Refused {
         /// Which prompt.
@@ -73,7 +74,7 @@ pub enum PromptError {
         /// What it uses, and what prompts offer.
         what: String,
     },
-    /// It writes or does more than any prompt needs.
+    /// It writes more text or takes more steps than any prompt needs.
     #[error("prompt {name}.j2: {what}; write a shorter one")]
     TooMuch {
         /// Which prompt.
@@ -151,7 +152,7 @@ impl Prompts {
         self.fill("question", context! { transcript })
     }
 
-    /// Puts a question to a model that sees.
+    /// Puts a question to a vision model.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
@@ -164,7 +165,7 @@ impl Prompts {
         self.fill(name, context! { question, history, is_opening => is_opening(question) })
     }
 
-    /// Asks a model that sees for all that a view shows, as JSON. `complaint` says what was wrong with its last answer.
+    /// Asks a vision model for everything that a view shows, as JSON. `complaint` is the fault of its last answer.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.
@@ -172,8 +173,8 @@ impl Prompts {
         self.fill("see", context! { complaint => complaint.unwrap_or_default() })
     }
 
-    /// Asks a language model to summarise a dialogue. The prompt names what was denied, so that it stays out, and what was
-    /// wrong with an earlier summary.
+    /// Asks a language model to summarise a dialogue. The prompt lists the denied objects, so that they stay out, and
+    /// the faults of an earlier summary.
     ///
     /// # Errors
     /// When an overridden template cannot be filled.

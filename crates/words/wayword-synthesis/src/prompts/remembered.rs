@@ -1,15 +1,15 @@
-//! What the writing prompt tells of the memory of a walk: rooms, doors, bends, and things that are seen from several
-//! frames, each once.
+//! Describes the memory of a walk for the writing prompt: rooms, doors, bends, and things that are seen from several
+//! frames, one line each.
 
 use wayword_checks::memory::{Bend, Memory, Opening, Remembered, Stay};
 use wayword_core::Side;
 
-/// Most things that are told.
+/// Most lines for things.
 const MOST_THINGS: usize = 16;
-/// A thing that is nearer to the end than this is told with its distance from there, metres.
+/// A thing nearer to the end than this gets a line with its distance from there, metres.
 const NEAR_END_M: f64 = 3.0;
 
-/// One line for each thing that is worth telling.
+/// The lines for all rooms, doors, bends and things that are worth mentioning.
 pub(super) fn remembered(memory: &Memory) -> Vec<String> {
     let mut told: Vec<String> = rooms(&memory.stays).into_iter().collect();
     told.extend(memory.openings.iter().filter(|opening| opening.has_door).map(door));
@@ -29,7 +29,7 @@ fn door(opening: &Opening) -> String {
     format!("between Frame {before} and Frame {behind} a door leads from the {from} into the {to}")
 }
 
-/// A bend of several moves, which a text tells as one turn.
+/// The line for a bend of several moves, which a text should describe as one turn.
 fn bend(bend: &Bend) -> Option<String> {
     let way = match bend.side() {
         Side::Left => "to the left",
@@ -41,7 +41,7 @@ fn bend(bend: &Bend) -> Option<String> {
         .then(|| format!("the turns from {} are one {slight}bend {way}", frames(bend.first, bend.last)))
 }
 
-/// A thing that one passes, that is seen from several frames, or that is near the end.
+/// The line for a thing that the walk passes, that is seen from several frames, or that is near the end.
 fn told_thing(memory: &Memory, thing: &Remembered) -> Option<String> {
     let end = memory.frames().saturating_sub(1);
     let at_end = memory.distance_m(thing, end).filter(|distance_m| *distance_m < NEAR_END_M);

@@ -86,7 +86,7 @@ fn the_writing_prompts() {
 }
 
 #[test]
-fn who_writes_about_a_video_without_poses_is_told_to_make_no_motion_up() {
+fn writing_prompt_without_poses_forbids_invented_motion() {
     let mut path = walk().path;
     path.motion = Motion::Unknown;
     path.target.as_mut().unwrap().told_by = vec![Distinction::OnSide { side: Side::Left }];
@@ -125,7 +125,7 @@ fn after_refusal(text: &str, check: Check, words: &str, reason: &str) -> String 
 }
 
 #[test]
-fn a_refusal_says_what_would_be_right() {
+fn reasons_of_a_refusal_contain_the_correction() {
     let reason = "the path does not turn left there";
     let one = after_refusal("Walk on. Turn left. Go up the stairs.", Check::Turns, "Turn left", reason);
     assert!(
@@ -155,7 +155,7 @@ fn a_prompt_shows_at_most_24_references_whatever_the_style_has() {
 }
 
 #[test]
-fn what_a_frame_shows_is_listed_and_a_target_that_nobody_saw_is_told_as_such() {
+fn writing_prompt_lists_things_of_frames_and_marks_an_unseen_target() {
     let style = built_in("reverie").unwrap();
     let profile = Profile::measure(&style.references);
     let prompt =
@@ -184,7 +184,7 @@ fn what_a_frame_shows_is_listed_and_a_target_that_nobody_saw_is_told_as_such() {
 
 /// A hallway with a sofa on the left that two frames show, and then a bedroom.
 #[test]
-fn the_prompt_tells_each_thing_and_room_of_the_walk_once() {
+fn writing_prompt_describes_each_thing_and_room_once() {
     let mut walk = walk();
     let looks =
         [("hallway", Where::Left), ("hallway", Where::Left), ("hallway", Where::Right), ("bedroom", Where::Middle)];
@@ -210,7 +210,7 @@ fn the_prompt_tells_each_thing_and_room_of_the_walk_once() {
 }
 
 #[test]
-fn a_question_without_an_answer_is_not_told_again() {
+fn unanswered_questions_are_left_out_of_prompts() {
     let prompts = Prompts::new(&[]).unwrap();
     let history = [Exchange::new(OPENING, "A bed."), Exchange::new("Is there a rug?", "")];
     for manner in [Manner::Chat, Manner::Completion] {
@@ -219,7 +219,7 @@ fn a_question_without_an_answer_is_not_told_again() {
 }
 
 #[test]
-fn a_prompt_of_ones_own_takes_the_place_of_the_built_in_one_and_changes_the_hash() {
+fn a_user_prompt_replaces_the_built_in_one_and_changes_the_hash() {
     let own = Prompts::new(&[("answer".into(), "{{ question }}!".into())]).unwrap();
     assert_eq!(own.answer(Manner::Chat, "What", &[]).unwrap(), "What!");
     assert_ne!(own.hash(), Prompts::new(&[]).unwrap().hash());
@@ -248,7 +248,7 @@ fn a_prompt_that_writes_without_bound_is_refused_with_the_bound() {
 }
 
 #[test]
-fn what_would_grow_without_bound_is_not_offered() {
+fn templates_with_unlimited_constructs_are_refused() {
     for (source, what) in [
         ("A\n{% set a = question %}", "`set`"),
         ("A\n{%- macro f() %}{% endmacro %}", "`macro`"),
@@ -272,7 +272,7 @@ fn what_would_grow_without_bound_is_not_offered() {
 }
 
 #[test]
-fn prompts_offer_what_people_write_in_them() {
+fn common_filters_are_offered() {
     let source = "**A** * {# a * note #}{{ question | upper | replace('A', 'b') ~ '!' }} {{ history | length + 1 }} \
                   {{ history | map(attribute='answer') | join('; ') | indent(2, true) | trim }} {{ question | tojson }} \
                   {{ [3, 1, 2] | sort | first }}{{ nothing | default(4) }}{% raw %} {{ a * b }}{% endraw %}";

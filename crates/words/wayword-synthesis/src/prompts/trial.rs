@@ -1,5 +1,5 @@
-//! Fills every prompt once when the prompts are loaded. So a template that asks for a variable that it does not get is
-//! reported before a run begins, not at its first frame.
+//! Fills every prompt once with made-up values when the prompts are loaded. So a template that uses an unknown variable
+//! is reported before a run begins, not at its first frame.
 
 use super::{Manner, PromptError, Prompts};
 use crate::{

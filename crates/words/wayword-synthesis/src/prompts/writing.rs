@@ -1,4 +1,4 @@
-//! What the writing prompt is filled with.
+//! Computes the values that fill the writing prompt: frames, moves, references, constraints.
 
 use super::{corrections::reasons, remembered::remembered};
 use crate::{walk::Walk, writer::Brief};
@@ -11,7 +11,7 @@ use wayword_language::{lexicon::agree, text::word_count};
 const MOST_REFERENCES: usize = 24;
 /// Most landmarks of a frame.
 const MOST_LANDMARKS: usize = 8;
-/// Most steps of the overview; a longer way is told by its frames alone.
+/// Most steps of the overview; a longer way has no overview.
 const MOST_STEPS: usize = 40;
 
 pub(super) fn context(brief: &Brief<'_>) -> Value {
@@ -63,7 +63,7 @@ fn ends_in_task(brief: &Brief<'_>) -> bool {
     brief.style.constraints.ends_in_task || brief.profile.tasks >= 0.5
 }
 
-/// What a text may name of a frame: each thing once, with its colour and side where they are known.
+/// The things of a frame that a text may name, each once, with its colour and side where they are known.
 fn landmarks(walk: &Walk, frame: usize) -> Vec<String> {
     let mut names: Vec<&str> = Vec::new();
     let mut told = Vec::new();
@@ -87,12 +87,12 @@ fn landmarks(walk: &Walk, frame: usize) -> Vec<String> {
     told
 }
 
-/// A frame, as reasons and the overview name it.
+/// The name of a frame in reasons and in the overview.
 pub(super) fn frame_of_move(at: usize) -> String {
     format!("Frame {at}")
 }
 
-/// What a walk does at a turn.
+/// The words for a turn of the walk.
 pub(super) fn way(turn: Turn) -> &'static str {
     match turn {
         Turn::Straight => "goes straight on",
@@ -122,7 +122,7 @@ fn climb(climb: Climb, rise_m: f64) -> String {
     }
 }
 
-/// The way in short: moves that go straight on are joined to the one before.
+/// The way in short: a move that goes straight on is joined to the one before.
 fn overview(moves: &[Move]) -> Vec<String> {
     let mut steps: Vec<(usize, usize, Turn, Climb, f64)> = Vec::new();
     for (at, step) in moves.iter().enumerate() {

@@ -1,15 +1,15 @@
-//! Of several texts for one walk, the one that a follower finds the walk by most surely.
+//! Chooses among several candidate texts of one walk the one by which a follower finds the way most surely.
 
 use super::{Order, Outcome, attempts};
 use crate::{observe::Observers, writer::Writer};
 use wayword_core::{Chosen, ChosenBy, Instruction, ModelError, Verdict};
 use wayword_language::text::word_count;
 
-/// What a word costs against the chance to arrive, natural logs: of two texts that lead there as surely, the shorter is
-/// kept, and ten words more have to make it a twentieth likelier.
+/// The cost of a word in natural logs of the probability to arrive: of two texts that lead there equally surely the
+/// shorter is chosen, and ten more words have to raise the probability by a twentieth.
 const COST_OF_A_WORD: f64 = 0.005;
 
-/// The texts of one writer, each with its repairs; the best of them is kept.
+/// Writes all candidates, each with its repairs, and returns the best.
 pub(super) fn written(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>) -> Result<Outcome, ModelError> {
     let mut accepted: Vec<Candidate> = Vec::new();
     let mut rejected: Option<Outcome> = None;
@@ -45,7 +45,8 @@ struct Candidate {
     instruction: Instruction,
 }
 
-/// The text that is kept, and what chose it. A text whose checks all pass goes before one with something unverified.
+/// The best candidate, and how it was chosen. A text that passes all checks is preferred to one with something
+/// unverified.
 fn best(accepted: Vec<Candidate>, order: Order<'_>) -> (Option<Candidate>, ChosenBy) {
     let verdict = accepted.iter().map(|candidate| candidate.instruction.verdict).min().unwrap_or(Verdict::Pass);
     let mut alike = accepted.into_iter().filter(|candidate| candidate.instruction.verdict == verdict);
@@ -59,7 +60,7 @@ fn best(accepted: Vec<Candidate>, order: Order<'_>) -> (Option<Candidate>, Chose
     let by = if scored.iter().any(|(score, _)| score.is_some()) { ChosenBy::Follower } else { ChosenBy::Checks };
     let mut best: Option<(Option<f64>, Candidate)> = None;
     for (score, candidate) in scored {
-        // Of equal ones the first stays.
+        // Of equal ones the first is chosen.
         if best.as_ref().is_none_or(|(before, _)| score > *before) {
             best = Some((score, candidate));
         }
@@ -67,8 +68,8 @@ fn best(accepted: Vec<Candidate>, order: Order<'_>) -> (Option<Candidate>, Chose
     (best.map(|(_, candidate)| candidate), by)
 }
 
-/// What a text is worth that leads to the end with a probability of `share`, natural logs: that, and the chance to take
-/// the right object there, less the cost of its words.
+/// The value of a text that leads to the end with probability `share`, natural logs: this probability times the chance
+/// to take the right object there, less the cost of its words.
 fn worth(share: f64, instruction: &Instruction) -> f64 {
     let objects = instruction.ambiguity.as_ref().map_or(1, |ambiguity| ambiguity.objects.max(1));
     share.max(f64::MIN_POSITIVE).ln() - (objects as f64).ln() - COST_OF_A_WORD * word_count(&instruction.text) as f64
@@ -89,7 +90,8 @@ mod tests {
     use wayword_checks::Checked;
     use wayword_core::Ambiguity;
 
-    /// Finds the end the more surely, the more often a text says "lamp"; cannot follow one that names the sofa.
+    /// A follower that finds the end the more surely the more often a text contains "lamp", and cannot follow one that
+    /// names the sofa.
     struct LampFinder;
 
     impl Follow for LampFinder {
@@ -125,14 +127,14 @@ mod tests {
     }
 
     #[test]
-    fn the_text_that_leads_there_most_surely_is_kept_and_the_record_says_what_chose() {
+    fn write_best_chooses_the_text_that_leads_there_most_surely() {
         let kept = kept(&[ON, TO_A_PIANO, TO_THE_LAMP, GOOD], Some(&LampFinder));
         assert_eq!(kept.text, TO_THE_LAMP);
         assert_eq!(kept.provenance.chosen, Some(Chosen { among: 4, passed: 3, number: 2, by: ChosenBy::Follower }));
     }
 
     #[test]
-    fn where_nothing_can_be_followed_the_checks_choose_alone_and_the_record_says_so() {
+    fn write_best_chooses_by_checks_without_a_usable_follower() {
         let follower: &dyn Follow = &LampFinder;
         for follower in [None, Some(follower)] {
             let kept = kept(&[TO_A_PIANO, GOOD], follower);
@@ -142,13 +144,13 @@ mod tests {
     }
 
     #[test]
-    fn of_texts_that_lead_there_as_surely_the_shorter_one_is_kept() {
+    fn write_best_prefers_the_shorter_of_equally_sure_texts() {
         let longer = "Walk straight ahead and carry on and turn right. Stop at the sink.";
         assert_eq!(kept(&[longer, ON], Some(&LampFinder)).text, ON);
     }
 
     #[test]
-    fn of_a_single_text_nothing_is_chosen() {
+    fn a_single_text_records_no_choice() {
         assert_eq!(kept(&[GOOD], Some(&LampFinder)).provenance.chosen, None);
     }
 }

@@ -1,4 +1,5 @@
-//! Write, check, and write again what failed; of several texts, keep the one that is followed most surely.
+//! Writes an instruction, checks it, and writes it again with the reasons where a check failed. If several candidates
+//! are written, the one that a follower finds the way by most surely is chosen.
 
 mod choose;
 
@@ -13,68 +14,68 @@ use wayword_checks::{Checked, Evidence, Memory, Subject, check_own};
 use wayword_core::{Ambiguity, Check, Finding, Instruction, ModelError, Provenance, Style, Verdict, seed};
 use wayword_language::text::words;
 
-/// Everything that one instruction is made from.
+/// Everything that an instruction is made from.
 #[derive(Clone, Copy)]
 pub struct Order<'a> {
     /// The path and what was seen along it.
     pub walk: &'a Walk,
     /// What stays in mind of the walk, for the writer.
     pub memory: &'a Memory,
-    /// What the text is checked against.
+    /// The evidence that the text is checked against.
     pub evidence: &'a Evidence,
     /// The style to write in.
     pub style: &'a Style,
-    /// What the style's references are like.
+    /// The measured properties of the style's references.
     pub profile: &'a Profile,
     /// The style's hash, for provenance.
     pub style_hash: &'a str,
     /// The run's seed.
     pub seed: u64,
-    /// How often a text that failed is written again, at most.
+    /// How often a failed text is written again, at most.
     pub repairs: u32,
-    /// How many texts are written, of which one is kept; at least 1.
+    /// How many candidate texts are written; the best is chosen. At least 1.
     pub candidates: u32,
-    /// Which one of these alone is written, where that is known.
+    /// The number of the only candidate to write, if just one is wanted.
     pub only: Option<u32>,
-    /// Who follows each text that passed its checks; nobody where `None`.
+    /// The follower for each text that passed its checks; `None` to skip this.
     pub follower: Option<&'a dyn Follow>,
-    /// Texts that the walk already has in this style: the new one has to differ from them, and is drawn anew.
+    /// Texts that the walk already has in this style. The new one has to differ from them.
     pub earlier: &'a [String],
     /// Pictures of frames, for a writer that sees.
     pub pictures: &'a [FramePicture],
 }
 
-/// Follows texts over what is known around their path.
+/// Follows texts on the map around their path.
 pub trait Follow {
-    /// Adds to a checked text whether it leads elsewhere, and returns what it may mean.
+    /// Adds a finding to the checked text if it leads elsewhere, and returns what it may mean.
     fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity;
 
-    /// How likely a text leads to the end of its walk, from 0 to 1, for the choice between texts. It is another follower
-    /// than the one of [`Self::follow`], so that the text is not judged by the one that chose it. `None` where it cannot be
-    /// followed.
+    /// How likely a text leads to the end of its walk, from 0 to 1, for the choice between texts. This uses another
+    /// follower than [`Self::follow`], so that the text is not judged by the one that chose it. `None` if the text
+    /// cannot be followed.
     fn leads_there(&self, text: &str) -> Option<f64>;
 }
 
-/// Who writes.
+/// The writer of an instruction, and the one that takes over if it fails.
 #[derive(Clone, Copy)]
 pub struct Writers<'a> {
-    /// Writes first, and again with the reasons where its text fails.
+    /// Writes first, and again with the reasons if its text fails.
     pub writer: &'a dyn Writer,
-    /// Writes where every text of the first writer failed; the provenance says so.
+    /// Writes if every text of the first writer failed; the provenance records it.
     pub finisher: Option<&'a dyn Writer>,
 }
 
-/// What came of one instruction: accepted, or rejected with the reasons.
+/// The result for one instruction: accepted, or rejected with the reasons.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// No check failed. A text is accepted as "unverified" where something could not be checked, and its verdict says
-    /// so.
+    /// No check failed. A text with a check that could not be decided is accepted too; its verdict is then
+    /// "unverified".
     Accepted(Instruction),
-    /// The best text still fails, or there is none.
+    /// The best text still fails, or no text was written.
     Rejected {
-        /// The best text, where there is one.
+        /// The best text, if there is one.
         last: Option<Instruction>,
-        /// Why.
+        /// The checks that it fails, with the reasons.
         reason: String,
     },
 }
@@ -82,7 +83,7 @@ pub enum Outcome {
 /// Writes an instruction and repairs it.
 ///
 /// # Errors
-/// When the model that writes gives nothing.
+/// When the writing model fails.
 pub fn write_and_repair(
     writers: Writers<'_>,
     observers: Observers<'_>,
@@ -101,10 +102,10 @@ pub fn write_and_repair(
     })
 }
 
-/// How often a finisher by rules writes again, at least. It costs nothing, so the limit for a model does not apply.
+/// Least number of attempts of a finisher by rules. They cost nothing, so the limit for a model does not apply.
 const FREE_REPAIRS: u32 = 8;
 
-/// One writer's texts until one passes; `candidate` counts the texts of which one is kept.
+/// Lets one writer write until a text passes; `candidate` is the number of the candidate.
 fn attempts(
     writer: &dyn Writer,
     observers: Observers<'_>,
@@ -130,7 +131,8 @@ fn attempts(
             Err(WriteError::Model(error)) => return Err(error),
         };
         let instruction = checked(text, provenance(writer, observers, order, repairs), order);
-        // Rules write again for nothing, until every check passes. A model only writes again what failed a check.
+        // Attempts by rules are free, so they go on until every check passes. A model only writes again what failed a
+        // check.
         let good_enough = if writer.name() == RulesWriter.name() { Verdict::Pass } else { Verdict::Unverified };
         if instruction.verdict <= good_enough {
             return Ok(Outcome::Accepted(instruction));
@@ -148,7 +150,7 @@ fn attempts(
 
 fn brief<'a>(order: Order<'a>, candidate: u32, complaints: &'a [Complaint]) -> Brief<'a> {
     let Order { walk, memory, style, profile, earlier, pictures, .. } = order;
-    // A later text of the same walk is drawn anew.
+    // A later text of the same walk gets its own seed.
     let seed = match earlier.len() {
         0 => order.seed,
         number => seed::derive(order.seed, &["text", &number.to_string()]),
@@ -156,7 +158,7 @@ fn brief<'a>(order: Order<'a>, candidate: u32, complaints: &'a [Complaint]) -> B
     Brief { candidate, complaints, earlier, pictures, ..Brief::new(walk, memory, style, profile, seed) }
 }
 
-/// Whether one of the earlier texts says the same words.
+/// Whether one of the earlier texts has the same words.
 fn is_there(text: &str, earlier: &[String]) -> bool {
     let said = words(text);
     earlier.iter().any(|other| words(other) == said)
@@ -171,7 +173,7 @@ fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instructio
     let target = order.walk.path.target.as_ref();
     let subject = Subject::closed(order.evidence, order.style, target).with_copies(&order.profile.copies);
     let mut checked = check_own(&text, Subject { writer_sees: !order.pictures.is_empty(), ..subject });
-    // A text that failed is written again, wherever it leads.
+    // A failed text is written again anyway, so it is not followed.
     let follower = order.follower.filter(|_| checked.verdict() != Verdict::Fail);
     let ambiguity = follower.map(|follower| follower.follow(&text, &mut checked));
     Instruction {
@@ -185,7 +187,8 @@ fn checked(text: String, provenance: Provenance, order: Order<'_>) -> Instructio
     }
 }
 
-/// The checks that the best text fails, with the reasons; where there is no text, why the last one could not be used.
+/// The checks that the best text fails, with the reasons; if there is no text, the reason why the last reply was
+/// unusable.
 fn reasons(best: Option<&Instruction>, complaints: &[Complaint]) -> String {
     let unusable = || complaints.last().map_or(&[][..], |complaint| &complaint.findings);
     let findings = best.map_or_else(unusable, |instruction| &instruction.findings);
@@ -200,7 +203,7 @@ fn provenance(writer: &dyn Writer, observers: Observers<'_>, order: Order<'_>, r
         Mode::Single => "one fixed request",
         Mode::Structured { .. } => "one structured request",
     };
-    // Several looks of a frame are condensed even where one answer described each.
+    // Several looks of a frame are summarised even if a single answer described each.
     let condensed = order.walk.observations.iter().any(|observation| observation.looks.len() > 1);
     let summed_up = observers.mode != Mode::Single || condensed;
     let summariser = if summed_up { observers.summariser.name() } else { "nobody" };

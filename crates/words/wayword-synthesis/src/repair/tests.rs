@@ -59,7 +59,7 @@ fn along(places: &[(f64, f64)], things: &[&str]) -> Walk {
     Walk::new(path, observations)
 }
 
-/// An order for a walk with nothing asked beyond a single text.
+/// An order for a single text about a walk, without further wishes.
 pub(super) fn order<'a>(
     walk: &'a Walk,
     memory: &'a Memory,
@@ -146,7 +146,7 @@ fn a_text_with_a_hallucinated_object_goes_back_with_the_reason_until_it_is_right
 }
 
 #[test]
-fn rules_finish_what_a_model_cannot_and_say_so() {
+fn finisher_by_rules_takes_over_and_is_recorded() {
     let (outcome, complaints) = outcome(vec![said(WITH_A_PIANO), said(WITH_A_PIANO)], true, 1);
     let Outcome::Accepted(instruction) = outcome.unwrap() else { panic!("it was rejected") };
     assert!(!instruction.text.contains("piano"), "{}", instruction.text);
@@ -163,7 +163,7 @@ fn without_a_finisher_it_is_rejected_with_the_reason() {
 }
 
 #[test]
-fn a_writer_that_says_nothing_is_rejected_with_that_reason() {
+fn an_empty_text_is_rejected_with_the_reason() {
     let empty = || Err(WriteError::Unusable { text: String::new(), reason: "it was empty".into() });
     let (outcome, _) = outcome(vec![empty(), empty()], false, 1);
     let Outcome::Rejected { last: None, reason } = outcome.unwrap() else { panic!("there is a text") };
@@ -171,14 +171,14 @@ fn a_writer_that_says_nothing_is_rejected_with_that_reason() {
 }
 
 #[test]
-fn a_model_that_gives_nothing_ends_the_writing() {
+fn a_failing_model_ends_the_writing() {
     let failed = ModelError::Failed { model: "test/scripted".into(), reason: "content filter".into() };
     let (outcome, _) = outcome(vec![Err(failed.clone().into())], true, 3);
     assert_eq!(outcome, Err(failed));
 }
 
 #[test]
-fn a_model_is_not_asked_again_where_nothing_failed() {
+fn a_model_is_not_asked_again_for_an_unverified_text() {
     let walk = walk();
     let nothing = Evidence::of_path_alone(&walk.path);
     let mode = Mode::Dialogue { questions: 9 };
@@ -188,7 +188,7 @@ fn a_model_is_not_asked_again_where_nothing_failed() {
 }
 
 #[test]
-fn who_condensed_the_looks_around_is_told_even_without_a_dialogue() {
+fn provenance_names_the_summariser_of_panoramas_without_a_dialogue() {
     let mut walk = walk();
     let summariser = |walk: &Walk| {
         let evidence = walk.evidence().unwrap();
@@ -203,7 +203,7 @@ fn who_condensed_the_looks_around_is_told_even_without_a_dialogue() {
 }
 
 #[test]
-fn nobody_is_sent_anywhere_on_a_path_that_goes_nowhere() {
+fn a_path_of_one_viewpoint_gets_a_text_without_movement() {
     let observers = Observers {
         asker: &RulesAsker::default(),
         answerer: &Labels::default(),
@@ -268,7 +268,7 @@ fn a_text_that_the_walk_already_has_is_written_again() {
 }
 
 #[test]
-fn a_writer_that_sees_the_pictures_may_name_what_no_caption_does() {
+fn a_writer_with_pictures_may_name_things_beyond_captions() {
     let (walk, style) = (walk(), built_in("r2r").unwrap());
     let (evidence, memory) = (walk.evidence().unwrap(), walk.memory());
     let profile = Profile::of(&style);
@@ -292,7 +292,7 @@ fn on_video(walk: &Walk) -> Walk {
 }
 
 #[test]
-fn a_turn_that_nobody_knows_goes_back_with_the_reason() {
+fn an_invented_turn_goes_back_with_the_reason() {
     let walk = on_video(&walk());
     let evidence = walk.evidence().unwrap();
     let told = "Walk past the sofa to the lamp. Stop at the sink.";
@@ -309,7 +309,7 @@ fn a_turn_that_nobody_knows_goes_back_with_the_reason() {
     assert!(matches!(outcome.unwrap(), Outcome::Rejected { .. }));
 }
 
-/// Rooms and things of a video: any of some, or none.
+/// Random rooms and things for the frames of a video; either may be missing.
 fn sights() -> impl Strategy<Value = Vec<(Option<&'static str>, Option<&'static str>)>> {
     let room = prop::sample::select(vec!["kitchen", "hallway", "stairs", "balcony", "bedroom", "garage"]);
     let thing = prop::sample::select(vec!["sofa", "lamp", "stairs", "door", "sink", "painting", "toilet", "rug"]);

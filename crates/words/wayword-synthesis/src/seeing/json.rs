@@ -1,4 +1,5 @@
-//! Finds the JSON in an answer, whatever surrounds it, and mends what models get wrong.
+//! Finds the JSON in an answer, even with text around it, and repairs frequent mistakes of models: wrong quotes,
+//! trailing commas, `True`, a missing end.
 
 use serde_json::{Deserializer, Value};
 
@@ -9,14 +10,14 @@ pub(super) const MOST_BYTES: usize = 32 * 1024;
 #[derive(Debug, PartialEq)]
 pub(super) struct Found {
     pub(super) value: Value,
-    /// Whether the answer ends in the middle of it. The value then holds what was complete.
+    /// Whether the answer breaks off within the JSON. The value then has only the complete part.
     pub(super) is_cut: bool,
 }
 
 /// The first object of an answer, or an array of objects.
 ///
 /// # Errors
-/// When there is none, or it is too long: what is wrong, in words for the model.
+/// When there is none, or the answer is too long; the message is meant for the model.
 pub(super) fn find(answer: &str) -> Result<Found, String> {
     if answer.len() > MOST_BYTES {
         return Err(format!("it has {} bytes, more than {MOST_BYTES}", answer.len()));
@@ -34,20 +35,20 @@ pub(super) fn find(answer: &str) -> Result<Found, String> {
     }
 }
 
-/// Where the text stands: how much of it is complete, and what is open there.
+/// The state of a repair: the output so far, and the brackets that are open.
 #[derive(Default)]
 struct Mending {
     out: String,
     open: Vec<char>,
-    /// The length up to which everything is complete, and what was open there.
+    /// The length of the last complete part, and the brackets that were open there.
     whole: Option<(usize, Vec<char>)>,
 }
 
-/// Most brackets within each other; JSON of the form has four.
+/// Deepest nesting of brackets; JSON of the schema has four levels.
 const DEEPEST: usize = 32;
 
-/// JSON without commas before brackets, with the words and quotes of JSON in place of other languages', and closed where
-/// it was cut off. Also whether it was.
+/// Repairs JSON: removes commas before closing brackets, replaces the words and quotes of other languages, and closes
+/// it where it breaks off. The flag is true if it breaks off.
 fn mended(text: &str) -> (String, bool) {
     let mut mending = Mending::default();
     let mut rest = text;
@@ -104,7 +105,7 @@ impl Mending {
         self.out.truncate(kept);
     }
 
-    /// What was complete when the text ended, closed.
+    /// Cuts the output to its last complete part and closes the open brackets.
     fn ended(mut self) -> (String, bool) {
         let Some((length, open)) = self.whole.take() else { return (String::new(), true) };
         self.out.truncate(length);
@@ -113,7 +114,7 @@ impl Mending {
     }
 }
 
-/// The string that a text begins with, without its quotes, and its length with them. `None` where it does not end.
+/// The string at the beginning of a text, without its quotes, and its length with them. `None` if it is not closed.
 fn string(text: &str, quote: char) -> Option<(String, usize)> {
     let end = if quote == '“' { '”' } else { quote };
     let mut said = String::new();
@@ -131,7 +132,7 @@ fn string(text: &str, quote: char) -> Option<(String, usize)> {
     None
 }
 
-/// A bare word as JSON has it: a constant, or a string that lacks its quotes.
+/// The JSON for a word without quotes: a constant, or else a string.
 fn word(word: &str) -> String {
     match word.to_ascii_lowercase().as_str() {
         "true" => "true".to_owned(),
@@ -149,7 +150,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn what_surrounds_json_and_what_models_get_wrong_in_it_is_mended() {
+    fn find_json_repairs_mistakes_and_skips_text_around_it() {
         let wanted = json!({ "room": "hall", "things": [{ "name": "sofa", "sure": true }] });
         for answer in [
             r#"{"room": "hall", "things": [{"name": "sofa", "sure": true}]}"#,
@@ -165,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn of_json_that_was_cut_off_stays_what_was_complete() {
+    fn find_json_returns_the_complete_part_of_a_cut_answer() {
         let cut = r#"{"room": "hall", "things": [{"name": "sofa"}, {"name": "lamp"}, {"name": "tab"#;
         let value = json!({ "room": "hall", "things": [{ "name": "sofa" }, { "name": "lamp" }] });
         assert_eq!(find(cut), Ok(Found { value, is_cut: true }));

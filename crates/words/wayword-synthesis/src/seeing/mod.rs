@@ -1,8 +1,7 @@
 //! One structured request about a view: the room, the ways out, the things, and how sure the model is of each.
 //!
-//! Models that can talk answer it in one call. `read` reads the answer as far as it can be understood, `told` makes a
-//! caption of it by rules. An answer that cannot be read is asked for once more, with what was wrong, and then read as
-//! words like any description.
+//! A capable model answers in one call. Its answer is parsed leniently and turned into a caption by rules. If it cannot
+//! be parsed, the request is repeated once with the reason, and the second answer is read as free text if necessary.
 
 mod json;
 mod names;
@@ -20,27 +19,28 @@ use crate::{
 use wayword_core::{AnswerForm, Ask, Caption, Exchange, Form, ModelError, Schema, Sighting, Trouble, View, Witness};
 use wayword_language::lexicon::{agree, with_article};
 
-/// The form of the answer.
+/// The JSON schema of the answer.
 pub const SCHEMA: Schema = Schema { name: "view", json: include_str!("schema.json") };
 
-/// The request, as the transcript has it.
+/// The request in the form that the transcript shows.
 pub const REQUEST: &str = "What does the view show a walker?";
 
-/// Beyond this, a thing is far, metres.
+/// A thing farther away than this counts as far, metres.
 pub(crate) const FAR_M: f64 = 4.0;
 
-/// What precedes the reason for which an answer is asked for once more.
+/// The words before the reason in a repeated request.
 const AGAIN: &str = "What does it show, in the form that was asked for? The last answer could not be read: ";
 
-/// Longest answer that a transcript keeps, bytes.
+/// Longest answer in a transcript, bytes; longer ones are cut.
 const MOST_KEPT: usize = 8 * 1024;
 
-/// Why an answer is asked for once more, where the question says so.
+/// The reason in a repeated request; `None` for any other question.
 pub(crate) fn complaint(question: &str) -> Option<&str> {
     question.strip_prefix(AGAIN)
 }
 
-/// Asks about a view, and at most so many questions about what stays open: the room, and what is only perhaps there.
+/// Asks about a view, and then at most `questions` questions about what the answer left open: the room, and things that
+/// are only perhaps there.
 ///
 /// # Errors
 /// When a role does not answer.
@@ -58,7 +58,7 @@ pub(crate) fn see(view: &View, observers: Observers<'_>, questions: usize) -> Re
             transcript.push(Exchange { question, answer: kept(&second), trouble: Some(trouble) });
             match read::read(&second, false) {
                 Ok(seen) => (Some(seen), Some(Form::Mended)),
-                // What was complete before it was cut off is better than nothing.
+                // The complete part of a cut answer is better than no answer.
                 Err(_) => (read::read(&second, true).or_else(|_| read::read(&first, true)).ok(), Some(Form::Broken)),
             }
         }
@@ -72,14 +72,15 @@ pub(crate) fn see(view: &View, observers: Observers<'_>, questions: usize) -> Re
     Ok(Caption { transcript, form, ..caption })
 }
 
-/// Asks for the form. The question says what was wrong before; the whole wrong answer would only be repeated.
+/// Sends the structured request. A repeated one includes only the reason and not the wrong answer, which the model
+/// would copy.
 fn ask(view: &View, question: &str, observers: Observers<'_>) -> Result<String, ModelError> {
     let ask = Ask { view, question, history: &[], answer: AnswerForm::Json(SCHEMA) };
     observers.answerer.answer(&[ask]).pop().unwrap_or_else(|| Err(unanswered(observers.answerer)))
 }
 
-/// The answers to questions about what stays open. They do not depend on each other, so they are asked at the same time;
-/// those that are refused once more, in other words.
+/// Asks the open questions. They do not depend on each other, so they are sent together; refused ones are sent once
+/// more in other words.
 fn settled(view: &View, questions: Vec<String>, observers: Observers<'_>) -> Result<Vec<Exchange>, ModelError> {
     let answers = in_words(view, &questions, observers)?;
     let is_refused: Vec<bool> = answers.iter().map(|answer| refuses(answer)).collect();
@@ -108,7 +109,8 @@ fn kept(answer: &str) -> String {
     answer[..answer.floor_char_boundary(MOST_KEPT)].to_owned()
 }
 
-/// The caption of an answer that does not have the form: what it says in words, if anything. A refusal says nothing.
+/// The caption of an answer that is not in the requested form: its words are read as a description. A refusal yields an
+/// empty caption.
 fn as_words(transcript: Vec<Exchange>, by: &str) -> Result<Caption, ModelError> {
     let said = transcript.last().map_or("", |last| last.answer.as_str());
     let said = if refuses(said) { "" } else { said };
@@ -116,7 +118,7 @@ fn as_words(transcript: Vec<Exchange>, by: &str) -> Result<Caption, ModelError> 
     Ok(Caption { transcript, ..caption })
 }
 
-/// What an answer leaves open, as questions: the room first.
+/// The questions about what the answer left open: the room first.
 fn open_questions(caption: &Caption) -> Vec<String> {
     let room = caption.room.is_none().then(|| "Which room is this?".to_owned());
     let doubtful = caption.sightings.iter().filter(|sighting| sighting.witness == Witness::Unsure);
@@ -124,7 +126,7 @@ fn open_questions(caption: &Caption) -> Vec<String> {
     room.into_iter().chain(things).collect()
 }
 
-/// Takes in the answer to an open question.
+/// Updates the caption with the answer to an open question.
 fn settle(caption: &mut Caption, exchange: &Exchange, by: &str) {
     if caption.room.is_none()
         && let Some(room) = room(std::slice::from_ref(exchange))

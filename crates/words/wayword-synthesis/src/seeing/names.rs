@@ -1,4 +1,5 @@
-//! Names of things and rooms as models give them, in the words of the lexicon.
+//! Reads the names that models give to things and rooms, and separates colour, material and number from the name
+//! itself.
 
 use crate::dialogue::colour_at;
 use wayword_language::{
@@ -14,10 +15,10 @@ const MOST_WORDS: usize = 4;
 /// Most names that one thing may have: "sofa or bench".
 const MOST_NAMES: usize = 3;
 
-/// What a name says.
+/// A name taken apart.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct Named {
-    /// The names that it may have, each in the singular; one where the witness knows which.
+    /// The names that it may mean, each in the singular; a single one if the witness knows which.
     pub(crate) names: Vec<String>,
     pub(crate) is_guess: bool,
     pub(crate) several: bool,
@@ -25,7 +26,7 @@ pub(crate) struct Named {
     pub(crate) material: Option<String>,
 }
 
-/// Reads a name; without names where it is none.
+/// Reads a name; the result has no names if the text is none.
 pub(crate) fn named(said: &str) -> Named {
     let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase().replace('’', "'");
     let mut named = Named { is_guess: said.contains('?'), ..Named::default() };
@@ -83,7 +84,7 @@ impl Named {
     }
 }
 
-/// "Television on the wall" is a television. "Chest of drawers" stays whole.
+/// The words before a phrase of place: "television on the wall" is a television. "Chest of drawers" stays whole.
 fn before_the_place<'a, 'b>(words: &'a [&'b str]) -> &'a [&'b str] {
     let ends = |at: &usize| {
         let of_bunch = words[*at] == "of" && *at > 0 && BUNCHES.contains(&words[at - 1]);
@@ -114,7 +115,7 @@ fn is_name(name: &str) -> bool {
     fits && (in_lexicon || !(is_nothing(head) || colour_at(&[head]).is_some()))
 }
 
-/// The rooms that a name may mean, and whether it is a guess.
+/// The rooms that a text may mean, and whether it is a guess.
 pub(crate) fn rooms(said: &str) -> (Vec<String>, bool) {
     let said = &said[..said.floor_char_boundary(4 * MOST_BYTES)].to_lowercase();
     let words: Vec<&str> =
@@ -157,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_is_told_from_what_surrounds_it() {
+    fn read_name_separates_a_name_from_its_surroundings() {
         for (said, names) in [
             ("Sofa", vec!["sofa"]),
             ("the large flat-screen television on the wall", vec!["television"]),
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_material_number_and_doubt_are_kept() {
+    fn read_name_returns_colours_material_number_and_doubt() {
         let told = named("possibly two dark grey leather armchairs");
         assert!(told.is_guess && told.several);
         assert_eq!((told.colours, told.material), (vec!["dark grey".to_owned()], Some("leather".to_owned())));

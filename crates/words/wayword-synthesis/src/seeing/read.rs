@@ -1,4 +1,4 @@
-//! Reads what a model says of a view, as far as it can be understood: other names of fields, other types, another case.
+//! Parses a structured answer leniently: models use other field names, other types and another case than the schema.
 
 use super::{
     json,
@@ -12,24 +12,24 @@ use wayword_language::{
     lexicon::{Class, agree, thing},
 };
 
-/// Most things that are kept of one view.
+/// Most things that are taken from one answer.
 const MOST_THINGS: usize = 24;
-/// Most ways out that are kept.
+/// Most ways out that are taken.
 const MOST_WAYS: usize = 8;
-/// Most words of which colours are taken.
+/// Most words that are searched for colours.
 const MOST_COLOUR_WORDS: usize = 12;
 
-/// What a model says of a view.
+/// The content of a structured answer about a view.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Seen {
-    /// The rooms that one may stand in; one where the model is sure.
+    /// The rooms that it may be; one if the model is sure.
     pub(super) rooms: Vec<String>,
     pub(super) room_is_sure: bool,
     pub(super) ways: Vec<WayOut>,
     pub(super) things: Vec<Thing>,
 }
 
-/// One thing.
+/// A thing in a structured answer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Thing {
     pub(super) told: Named,
@@ -39,10 +39,10 @@ pub(super) struct Thing {
     pub(super) stands_out: bool,
 }
 
-/// Reads an answer.
+/// Parses an answer. One that was cut off is accepted only if `takes_part`, and then yields its complete part.
 ///
 /// # Errors
-/// What is wrong with it, in words for the model. An answer that was cut off is read where `takes_part`.
+/// With the fault in words for the model.
 pub(super) fn read(answer: &str, takes_part: bool) -> Result<Seen, String> {
     let json::Found { value, is_cut } = json::find(answer)?;
     if is_cut && !takes_part {
@@ -81,7 +81,7 @@ pub(super) fn read(answer: &str, takes_part: bool) -> Result<Seen, String> {
     })
 }
 
-/// The first of some fields. Case and underscores do not matter.
+/// The first of these fields that is present. Case and underscores do not matter.
 fn field<'a>(fields: &'a Map<String, Value>, names: &[&str]) -> Option<&'a Value> {
     let plain = |key: &str| key.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
     names.iter().find_map(|name| {
@@ -152,7 +152,7 @@ fn thing_of(entry: &Value, cues: &[Named]) -> Option<Thing> {
         .map(str::to_owned)
         .or(told.material);
     let stands_out = cues.iter().any(|cue| is_cue(cue, &told));
-    // Walls, floors and ceilings are everywhere, and count only where one knows a place by them.
+    // Walls, floors and ceilings are in every room, so they count only if the model gave them as a mark of the place.
     told.names.retain(|name| stands_out || !is_everywhere(name));
     if told.names.is_empty() {
         return None;
@@ -172,7 +172,7 @@ fn thing_of(entry: &Value, cues: &[Named]) -> Option<Thing> {
     })
 }
 
-/// Whether a cue means a thing. "Brick wall" means no white wall.
+/// Whether a cue ("stands out") means a thing. "Brick wall" does not mean a white wall.
 fn is_cue(cue: &Named, told: &Named) -> bool {
     let names = cue.names.iter().any(|cue| told.names.iter().any(|name| agree(cue, name)));
     let is_everywhere = told.names.iter().any(|name| is_everywhere(name));
@@ -201,7 +201,7 @@ fn colours(said: &str) -> Vec<String> {
     found
 }
 
-/// Whether a model says that it is sure.
+/// Whether a field expresses certainty, as a flag, a number or words.
 fn is_sure(value: &Value) -> bool {
     match value {
         Value::Bool(flag) => *flag,
@@ -228,7 +228,7 @@ fn is_sure(value: &Value) -> bool {
     }
 }
 
-/// The third of the view that words name; `None` where they name none or several.
+/// The third of the view that a text names; `None` if it names none or several.
 fn place(said: &str) -> Option<Where> {
     let said = said.to_lowercase();
     let has = |words: &[&str]| words.iter().any(|word| said.contains(word));
@@ -253,7 +253,7 @@ fn way(entry: &Value) -> Option<WayOut> {
         let fits = matches!(class, Some(Class::Door | Class::Stairs)) || is_opening(name);
         fits && !told.is_guess
     });
-    // A hallway that one looks along is a way, but no thing.
+    // A hallway that one looks along is a way out, but no thing.
     let name = name.or_else(|| room.is_some().then(|| "opening".to_owned()))?;
     let place = field(fields, &["side", "position", "where", "place"]).and_then(|side| place(&text(side)));
     Some(WayOut { name, place, leads_to: room })
@@ -266,7 +266,7 @@ fn is_opening(name: &str) -> bool {
             .any(|kind| name.ends_with(kind))
 }
 
-/// Things of one name and side are several.
+/// Joins things of the same name and side into one that counts as several.
 fn each_once(things: Vec<Thing>) -> Vec<Thing> {
     let mut kept: Vec<Thing> = Vec::new();
     for thing in things {

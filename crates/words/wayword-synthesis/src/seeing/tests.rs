@@ -6,7 +6,7 @@ use crate::{
 use std::sync::Mutex;
 use wayword_core::{Answer, Answerer, DVec3, Heading, Pose, WayOut, Where};
 
-/// An answerer that gives these answers in their order and keeps what it was asked.
+/// An answerer that gives these answers in order and records its questions.
 struct Scripted {
     answers: Mutex<Vec<String>>,
     asked: Mutex<Vec<String>>,
@@ -85,7 +85,7 @@ fn an_answer_becomes_evidence_and_a_caption_in_one_call() {
 }
 
 #[test]
-fn what_surrounds_the_json_and_other_names_case_and_types_do_no_harm() {
+fn answers_with_other_names_case_and_types_are_parsed() {
     for answer in [
         format!("Sure! Here is what I see:\n```json\n{GOOD}\n```\nLet me know if you need more."),
         GOOD.replace("\"things\"", "\"Objects\"")
@@ -140,7 +140,7 @@ fn an_answer_that_breaks_it_twice_is_read_as_words() {
 }
 
 #[test]
-fn of_an_answer_that_is_cut_off_twice_stays_what_was_complete() {
+fn an_answer_cut_twice_yields_its_complete_part() {
     let cut = &GOOD[..GOOD.find("\"piano\"").unwrap()];
     let (caption, _) = seen(&[cut, cut], 0);
     assert_eq!((caption.form, caption.room.as_deref()), (Some(Form::Broken), Some("living room")));
@@ -148,7 +148,7 @@ fn of_an_answer_that_is_cut_off_twice_stays_what_was_complete() {
 }
 
 #[test]
-fn an_answer_of_two_megabytes_is_neither_read_nor_kept() {
+fn an_answer_of_two_megabytes_is_refused_and_cut_in_the_transcript() {
     let long = format!("{{\"things\": [{}]}}", "\"sofa\", ".repeat(250_000));
     let (caption, asked) = seen(&[&long, &long], 0);
     assert_eq!(caption.form, Some(Form::Broken));
@@ -160,7 +160,7 @@ fn an_answer_of_two_megabytes_is_neither_read_nor_kept() {
 }
 
 #[test]
-fn what_stays_open_is_asked_only_where_that_is_wanted() {
+fn open_questions_are_asked_up_to_the_limit() {
     let open = r#"{"room": "unknown", "things": [{"name": "sofa"}, {"name": "piano", "sure": "perhaps"}, {"name": "harp", "sure": "perhaps"}]}"#;
     assert_eq!(seen(&[open], 0).1.len(), 1);
     let (caption, asked) = seen(&[open, "It is a music room.", "Yes, on the left.", "No."], 3);
@@ -172,7 +172,7 @@ fn what_stays_open_is_asked_only_where_that_is_wanted() {
 }
 
 #[test]
-fn a_question_that_is_refused_is_asked_once_more_and_a_second_refusal_settles_nothing() {
+fn a_refused_question_is_repeated_once_and_then_left_open() {
     let open =
         r#"{"room": "hall", "things": [{"name": "piano", "sure": "perhaps"}, {"name": "harp", "sure": "perhaps"}]}"#;
     let no = "I'm sorry, but I can't help with that.";
@@ -185,7 +185,7 @@ fn a_question_that_is_refused_is_asked_once_more_and_a_second_refusal_settles_no
 }
 
 #[test]
-fn what_is_only_perhaps_there_is_named_where_nothing_else_is() {
+fn doubtful_things_are_named_only_without_certain_ones() {
     let (caption, _) = seen(&[r#"{"room": "kitchen or dining room", "things": [{"name": "possibly a stove"}]}"#], 0);
     assert_eq!((caption.room, caption.perhaps_rooms.len()), (None, 2));
     assert_eq!(caption.text, "A place. It is perhaps a kitchen or a dining room. Perhaps there is a stove.");

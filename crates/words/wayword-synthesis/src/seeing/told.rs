@@ -1,4 +1,4 @@
-//! What a model says of a view, as a caption with its evidence.
+//! Makes a caption with sightings of a structured answer, by rules.
 
 use super::read::{Seen, Thing};
 use crate::dialogue::caption_of;
@@ -11,7 +11,7 @@ use wayword_language::{
 /// Most things that the text of a caption names.
 const MOST_IN_TEXT: usize = 12;
 
-/// A caption of what `by` saw.
+/// The caption of an answer; its sightings are attributed to `by`.
 pub(super) fn caption(seen: Seen, by: &str) -> Caption {
     let mut sightings: Vec<Sighting> = seen.things.iter().flat_map(|thing| of_thing(thing, by)).collect();
     for way in &seen.ways {
@@ -25,7 +25,7 @@ pub(super) fn caption(seen: Seen, by: &str) -> Caption {
     Caption { text, room, perhaps_rooms, sightings, ways: seen.ways, is_structured: true, ..Caption::default() }
 }
 
-/// A thing that may have several names is seen under none of them for sure.
+/// The sightings of a thing, one for each possible name. If it may have several names, none of them counts as seen.
 fn of_thing<'a>(thing: &'a Thing, by: &'a str) -> impl Iterator<Item = Sighting> + 'a {
     let witness = if thing.is_sure { Witness::Seen } else { Witness::Unsure };
     thing.told.names.iter().map(move |name| {
@@ -43,7 +43,8 @@ fn of_thing<'a>(thing: &'a Thing, by: &'a str) -> impl Iterator<Item = Sighting>
     })
 }
 
-/// The caption's text: what stands out first, what is far last. Doubtful things are named only where nothing is sure.
+/// The text of a caption: things that stand out come first, distant ones last. Doubtful things are named only if there
+/// is no certain one.
 pub(crate) fn text(room: Option<&str>, perhaps_rooms: &[String], sightings: &[Sighting], ways: &[WayOut]) -> String {
     let mut named: Vec<Sighting> =
         sightings.iter().filter(|sighting| sighting.witness == Witness::Seen).cloned().collect();

@@ -1,4 +1,4 @@
-//! Counts in reference texts how people word a place and a task.
+//! Counts how the reference texts of a style word a place and a task.
 
 use super::{
     names, verbs,
@@ -24,7 +24,7 @@ impl Counts {
     }
 }
 
-/// The wording of reference texts, as far as they are about places and tasks.
+/// Measures the wording of reference texts for places and tasks.
 pub(super) fn measure<'a>(texts: impl Iterator<Item = (&'a str, &'a Reading)>) -> Wording {
     let (mut counts, mut number) = (Counts::default(), 0.0);
     for (text, reading) in texts {
@@ -35,7 +35,7 @@ pub(super) fn measure<'a>(texts: impl Iterator<Item = (&'a str, &'a Reading)>) -
     Wording::smoothed(counts.0, number)
 }
 
-/// A text in parts: the way or the room, and the task.
+/// A text split into the part with the way or the room and the part with the task.
 struct Parts {
     order: &'static str,
     room: String,
@@ -75,7 +75,7 @@ fn count(text: &str, reading: &Reading, counts: &mut Counts) {
     names::names(reading, counts);
 }
 
-/// What can be said of an object, by table.
+/// The tables of properties that a text can mention of an object.
 const OF_OBJECT: [&str; 15] = [
     "closest",
     "near",
@@ -94,11 +94,11 @@ const OF_OBJECT: [&str; 15] = [
     "lowest",
 ];
 
-/// Counts what a task says of its object.
+/// Counts the properties of its object that a task mentions.
 fn object(task: &str, counts: &mut Counts) {
     let known = Wording::built_in();
     let task = storeys(task).unwrap_or_else(|| task.to_owned());
-    // "The top of the table" and "to the left of the sofa" say nothing of a row.
+    // "The top of the table" and "to the left of the sofa" do not place the object in a row.
     let parts_of = ["left", "right", "left side", "right side", "top", "bottom", "middle"];
     let whole = parts_of.iter().fold(task.clone(), |text, part| text.replace(&format!(" {part} of "), " "));
     let to_the_left = task.replace(" right ", " left ");
@@ -123,13 +123,14 @@ fn object(task: &str, counts: &mut Counts) {
     }
 }
 
-/// The construction of a table whose own words a text holds; of several, the one with the most words of its own.
+/// The construction of a table that a text contains with all its fixed words; of several, the one with the longest
+/// fixed words.
 fn first_of<'a>(table: &'a Shares, text: &str) -> Option<&'a str> {
     let holds = |key: &&String| literals(key).all(|part| text.contains(&part)) && literals(key).next().is_some();
     table.keys().filter(holds).max_by_key(|key| literals(key).map(|part| part.len()).sum::<usize>()).map(String::as_str)
 }
 
-/// The words of a construction between its slots, each run with a space before and behind.
+/// The fixed words of a construction between its slots, each run with a space before and after.
 fn literals(construction: &str) -> impl Iterator<Item = String> {
     let is_slot = |word: &str| word.starts_with('{') && !matches!(word, "{n}" | "{th}");
     let words: Vec<&str> = construction.split(' ').collect();
@@ -141,7 +142,7 @@ fn literals(construction: &str) -> impl Iterator<Item = String> {
     runs.into_iter()
 }
 
-/// The text with the numbers of storeys as slots, where it names one.
+/// The text with slots for the numbers of storeys; `None` if it names none.
 fn storeys(text: &str) -> Option<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_storey = |word: Option<&&str>| word.is_some_and(|word| matches!(*word, "level" | "floor"));
@@ -161,7 +162,7 @@ fn storeys(text: &str) -> Option<String> {
     found.then(|| format!(" {} ", slots.join(" ")))
 }
 
-/// Where the way ends and the task begins.
+/// Splits a text where the way ends and the task begins, or the other way round.
 fn parts(words: &[String], reading: &Reading) -> Parts {
     let part = |words: &[String]| format!(" {} ", words.join(" "));
     let first = words.iter().find(|word| *word != "please").map_or("", String::as_str);
@@ -183,7 +184,7 @@ fn parts(words: &[String], reading: &Reading) -> Parts {
         let to = words.iter().rposition(|word| Some(word.as_str()) == verb).unwrap_or(words.len());
         return Parts { order: "move", room: part(&words[..to]), task: part(&words[to..]) };
     }
-    // "Clean the mirror in the bathroom": the room begins behind the last "in the" or "from the".
+    // "Clean the mirror in the bathroom": the room begins at the first "in", "from" or "on" that a room's name follows.
     let begins = |at: &usize| {
         matches!(words[*at].as_str(), "in" | "from" | "inside" | "on" | "at")
             && words[*at + 1..]
@@ -195,7 +196,7 @@ fn parts(words: &[String], reading: &Reading) -> Parts {
     Parts { order: "task", room: part(&words[at..]), task: part(&words[..at]) }
 }
 
-/// The words before the room.
+/// Counts the words before the room ("go to", "proceed to").
 fn opener(words: &[String], counts: &mut Counts) {
     let known = Wording::built_in().table("opener");
     let ends = |word: &&String| {
@@ -218,7 +219,7 @@ mod tests {
     use wayword_language::reading::{What, read};
 
     #[test]
-    fn references_say_how_often_a_construction_is_used() {
+    fn measure_wording_counts_the_constructions_of_references() {
         let rooms = ["pantry", "nursery", "chapel", "cellar", "attic"];
         let texts: Vec<String> = (0..200)
             .map(|at| {

@@ -1,4 +1,5 @@
-//! Styles: the built-in ones, a user's own, and what reference texts of a style are like.
+//! Styles of instructions: the built-in ones, those in a user's file, and the measured properties of their reference
+//! texts.
 
 mod measure;
 mod names;
@@ -16,7 +17,7 @@ pub use wording::{Shares, Wording};
 const BUILT_IN: [(&str, &str); 2] =
     [("r2r", include_str!("builtin/r2r.toml")), ("reverie", include_str!("builtin/reverie.toml"))];
 
-/// How people word a place: our constructions, with their shares.
+/// The built-in wording of places: constructions with their shares.
 const PLACE: &str = include_str!("builtin/place.toml");
 
 /// Most reference texts of a style, and most bytes of each.
@@ -29,12 +30,12 @@ pub enum StyleError {
     /// A name that is not built in.
     #[error("there is no style {0:?}: name r2r, reverie, or a file that ends in .toml")]
     Unknown(String),
-    /// A file that does not hold a style.
+    /// A file that is no valid style.
     #[error("style {name}: {reason}")]
     Unreadable {
-        /// Where it came from.
+        /// The file or name that it came from.
         name: String,
-        /// What is wrong, with line and field.
+        /// The fault, with line and field.
         reason: String,
     },
     /// It has no name.
@@ -66,7 +67,7 @@ pub fn built_in(name: &str) -> Result<Style, StyleError> {
     parse(name, text)
 }
 
-/// The tables of the built-in wording. Its file is part of the program, and a test reads it.
+/// The tables of the built-in wording. The file is compiled in, and a test parses it.
 fn parse_wording() -> std::collections::BTreeMap<String, Shares> {
     toml::from_str(PLACE).unwrap_or_default()
 }
@@ -79,7 +80,7 @@ pub fn parse(name: &str, text: &str) -> Result<Style, StyleError> {
     parse_with(name, text, Vec::new())
 }
 
-/// The same, with more references than the file has.
+/// Like [`parse`], with more references than the file has.
 ///
 /// # Errors
 /// When it is no style, or there are no or too many references.
@@ -96,7 +97,7 @@ pub fn parse_with(name: &str, text: &str, more: Vec<String>) -> Result<Style, St
     })
 }
 
-/// Checks that a style can be used: that it has a name and references, and keeps to the bounds.
+/// Checks that a style can be used: it has a name and references, and is not too large.
 ///
 /// # Errors
 /// When it has no name, or no or too many references.
@@ -113,7 +114,7 @@ pub fn validated(style: Style) -> Result<Style, StyleError> {
     Ok(style)
 }
 
-/// A short hash of what a style asks for, for provenance.
+/// A short hash of a style's content, for provenance.
 #[must_use]
 pub fn hash(style: &Style) -> String {
     let json = serde_json::to_vec(style).unwrap_or_default();
@@ -160,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_style_is_refused_with_a_reason() {
+    fn invalid_styles_are_refused_with_a_reason() {
         assert!(matches!(built_in("poem"), Err(StyleError::Unknown(_))));
         assert!(parse("x", "name = 3").unwrap_err().to_string().contains("style x"));
         let unnamed = parse("x.toml", "name = \" \"\nreferences = [\"Stop.\"]").unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! What people call rooms and things: names that say no more than the usual one.
+//! Counts which of several equivalent names people use for rooms and things ("hallway", "hall", "corridor").
 
 use super::{measure::Counts, wording::ROOMS};
 use wayword_language::{
@@ -6,7 +6,7 @@ use wayword_language::{
     reading::{Reading, What},
 };
 
-/// Names of one room or thing that say no more of it than its usual name.
+/// Groups of names with the same meaning.
 const CALLED: &[&[&str]] = &[
     &["hallway", "hall", "corridor"],
     &["entryway", "foyer", "lobby"],
@@ -37,7 +37,7 @@ const CALLED: &[&[&str]] = &[
     &["desk chair", "office chair"],
 ];
 
-/// The names that mean a room or thing and no more.
+/// The group of names that a name belongs to.
 fn called(name: &str) -> Option<&'static [&'static str]> {
     CALLED.iter().find(|names| names.iter().any(|other| normal(other) == name)).copied()
 }

@@ -1,4 +1,4 @@
-//! What the reference texts of a style are like: the parameters of the rules writer.
+//! Measures the reference texts of a style: lengths, turns, wording. The rules writer takes its parameters from here.
 
 use super::{measure::measure, way::Way, wording::Wording};
 use serde::Serialize;
@@ -23,11 +23,11 @@ pub struct Profile {
     pub places: f64,
     /// Share that ends in a task.
     pub tasks: f64,
-    /// Share that names a floor or says "upstairs".
+    /// Share that names a floor, or contains "upstairs" or "downstairs".
     pub floors: f64,
     /// Share that ends in a full stop.
     pub full_stops: f64,
-    /// How they tell a way.
+    /// How they describe a way.
     #[serde(skip)]
     pub way: Way,
     /// How they word a place and a task.
@@ -38,7 +38,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// Measures the references of a style. What it says of itself in numbers goes before.
+    /// Measures the references of a style. Numbers that the style gives itself take precedence.
     #[must_use]
     pub fn of(style: &Style) -> Self {
         let mut profile = Self::measure(&style.references);
@@ -49,7 +49,7 @@ impl Profile {
         profile
     }
 
-    /// Measures texts; at least one has to have a word.
+    /// Measures texts; texts without words are ignored.
     #[must_use]
     pub fn measure(references: &[String]) -> Self {
         let texts: Vec<&String> = references.iter().filter(|text| word_count(text) > 0).collect();
@@ -91,7 +91,7 @@ mod tests {
     use crate::style::built_in;
 
     #[test]
-    fn a_style_that_says_how_long_its_texts_are_goes_before_its_references() {
+    fn explicit_lengths_of_a_style_override_its_references() {
         let style = Style { words: vec![5, 7], ..built_in("r2r").unwrap() };
         assert_eq!(Profile::of(&style).words, [5, 7]);
         let style = built_in("r2r").unwrap();
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn the_built_in_styles_measure_as_what_they_are() {
+    fn from_references_separates_the_coarse_and_the_fine_style() {
         let coarse = Profile::measure(&built_in("reverie").unwrap().references);
         assert!(
             !coarse.tells_turns() && coarse.tasks > 0.8 && coarse.sentences.iter().all(|count| *count == 1),

@@ -1,4 +1,4 @@
-//! What people do with things: verbs from the tasks of reference texts.
+//! Collects the verbs that reference texts use for tasks on things ("turn on {o}"), by kind of thing.
 
 use super::{
     measure::Counts,
@@ -13,15 +13,15 @@ use wayword_language::{
     },
 };
 
-/// A verb is taken from references that use it at least so often for one kind of thing.
+/// A verb is used if the references have it at least this often for one kind of thing.
 const LEAST_USES: f64 = 3.0;
 /// Words that may stand between a verb and its object.
 const PARTICLES: [&str; 14] =
     ["me", "on", "off", "up", "down", "out", "in", "away", "over", "at", "into", "inside", "under", "back"];
-/// And for things of one class, in this share of their tasks.
+/// For a whole class of things, it also needs this share of their tasks.
 const LEAST_SHARE: f64 = 0.01;
 
-/// What is done, with `{o}` for the object.
+/// Counts the verb of a text's task, with `{o}` in place of the object.
 pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
     let Some(task) = &reading.task else { return };
     let Some(What::Place(place)) = task.object.map(|at| &reading.events[at].what) else { return };
@@ -46,7 +46,7 @@ pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
     {
         return;
     }
-    // "Turn the light on": the particle stands behind the object.
+    // "Turn the light on": the particle comes after the object.
     let noun = place.name.rsplit(' ').next().unwrap_or_default();
     let behind = words[end..].iter().position(|word| word == noun).map(|noun| end + noun + 1);
     let particle = behind.and_then(|at| Some((words.get(at)?, words.get(at + 1))));
@@ -63,7 +63,7 @@ pub(super) fn verb(words: &[String], reading: &Reading, counts: &mut Counts) {
     counts.add(&verbs_of_class(kind.class), &key);
 }
 
-/// Keeps the verbs that several references use, and that the reader takes for a task on the thing.
+/// Keeps the verbs that several references use and that our own reader recognises as a task.
 pub(super) fn retain_common_verbs(counts: &mut Counts) {
     for (table, verbs) in &mut counts.0 {
         let Some(of) = table.strip_prefix(VERBS) else { continue };
@@ -74,7 +74,7 @@ pub(super) fn retain_common_verbs(counts: &mut Counts) {
     }
 }
 
-/// Whether the reader takes a verb for a task, and understands all of it.
+/// Whether our reader recognises a verb as a task and understands all of the sentence.
 fn is_read(verb: &str, object: &str) -> bool {
     let text = format!("Go to the kitchen and {}", verb.replace("{o}", &format!("the {object}")));
     let reading = read(&text, &BTreeSet::new());

@@ -1,7 +1,7 @@
-//! How people word a place and a task, as shares of constructions that are ours.
+//! How people word a place and a task: constructions of our own, each with the share of texts that use it.
 //!
-//! The constructions and the shares of the built-in style are in `builtin/reverie.toml`. Every other style is measured:
-//! its references say how often each construction is used, and the built-in shares fill in where they say little.
+//! The constructions and their built-in shares are in `builtin/place.toml`. For every other style the shares are
+//! measured on its references and smoothed with the built-in ones, which decide if the references show too little.
 
 use super::parse_wording;
 use crate::weighed::weighed;
@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, sync::LazyLock};
 use wayword_core::Choice;
 use wayword_language::lexicon::{Class, kinds, thing};
 
-/// A group of constructions with their shares.
+/// A table of constructions with their shares.
 pub type Shares = BTreeMap<String, f64>;
 
 /// The built-in shares.
@@ -22,7 +22,7 @@ pub struct Wording {
     pub(super) tables: BTreeMap<String, Shares>,
 }
 
-/// How many references the built-in shares count for, beside those of a style.
+/// The built-in shares count as much as this many references.
 const PRIOR: f64 = 12.0;
 
 impl Wording {
@@ -32,13 +32,14 @@ impl Wording {
         &BUILT_IN
     }
 
-    /// Shares from counts in `texts` references, smoothed by the built-in shares. Tables of verbs are kept as counted.
+    /// Shares from counts in `texts` references, smoothed by the built-in shares. Tables of verbs and names have counts
+    /// instead.
     pub(super) fn smoothed(counts: BTreeMap<String, Shares>, texts: f64) -> Self {
         let mut tables = BUILT_IN.tables.clone();
         for (name, shares) in &mut tables {
             let Some(counted) = counts.get(name) else { continue };
             if name == "share" {
-                // Each of these is a share of all references by itself.
+                // Each entry of this table is a share of all references.
                 for (key, share) in shares.iter_mut() {
                     let seen = counted.get(key).copied().unwrap_or_default();
                     *share = (seen + PRIOR * *share) / (texts + PRIOR);
@@ -63,14 +64,14 @@ impl Wording {
         Self { tables }
     }
 
-    /// A share of all texts.
+    /// The share of texts that have a property, from 0 to 1.
     #[must_use]
     pub fn share(&self, name: &str) -> f64 {
         let share = self.tables.get("share").and_then(|shares| shares.get(name)).copied();
         share.unwrap_or_default().clamp(0.0, 1.0)
     }
 
-    /// What a style chooses goes before what the built-in wording does.
+    /// Applies the choices of a style, which override those of the built-in wording.
     pub(super) fn choose(&mut self, choice: Choice) {
         let table = self.tables.entry("choice".to_owned()).or_default();
         for (name, chosen) in [("sure", choice.sure), ("sharp", choice.sharp)] {
@@ -78,13 +79,15 @@ impl Wording {
         }
     }
 
-    /// Over 1, what people say most is drawn more often than they say it.
+    /// The exponent of shares in [`Self::draw_sharply`]. Over 1, frequent constructions are drawn even more often than
+    /// people use them.
     #[must_use]
     pub fn sharp(&self) -> f64 {
         self.tables.get("choice").and_then(|choice| choice.get("sharp")).copied().unwrap_or(1.0).clamp(0.0, 10.0)
     }
 
-    /// In how many texts the target has to be pinned down, where it can be. The others say as much as people do.
+    /// The share of texts in which the target has to be singled out, if that is possible. The other texts mention as
+    /// much as people do.
     #[must_use]
     pub fn sure(&self) -> f64 {
         self.tables.get("choice").and_then(|choice| choice.get("sure")).copied().unwrap_or(1.0).clamp(0.0, 1.0)
@@ -97,24 +100,24 @@ impl Wording {
         self.tables.get(name).unwrap_or(&NONE)
     }
 
-    /// One construction of a table, by a power of its share.
+    /// Draws a construction of a table with a power of its share, among those that `may` be used.
     pub fn draw_sharply<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, may: impl Fn(&str) -> bool) -> Option<&'a str> {
         let options = self.table(name).iter().filter(|(key, _)| may(key));
         drawn(options.map(|(key, share)| (key.as_str(), share.powf(self.sharp()))), rng)
     }
 
-    /// One construction of a table, by its share, among those that may be used.
+    /// Draws a construction of a table with its share, among those that `may` be used.
     pub fn draw<'a>(&'a self, name: &str, rng: &mut ChaCha8Rng, may: impl Fn(&str) -> bool) -> Option<&'a str> {
         drawn(self.table(name).iter().filter(|(key, _)| may(key)).map(|(key, share)| (key.as_str(), *share)), rng)
     }
 
-    /// What to do with a thing: `{o}` stands for it. `sharp` over 1 prefers what is said most.
+    /// Draws a verb for a thing, with `{o}` in place of the thing. `sharp` over 1 prefers frequent verbs.
     pub fn verb(&self, name: &str, sharp: f64, rng: &mut ChaCha8Rng) -> &str {
         let own = self.verbs_of(name);
         drawn(own.into_iter().map(|(key, count)| (key, count.powf(sharp))), rng).unwrap_or("look at {o}")
     }
 
-    /// The verbs for a thing: those for its own kind, or, where there are few, with those for its class.
+    /// The verbs for a thing: those for its own kind, and, if these are few, also those for its class.
     fn verbs_of(&self, name: &str) -> Vec<(&str, f64)> {
         let mut found: BTreeMap<&str, f64> = BTreeMap::new();
         let mut enough = 0.0;
@@ -123,7 +126,7 @@ impl Wording {
         for table in tables {
             let shares = self.table(&table);
             let all: f64 = shares.values().sum();
-            // The general fills in for what the special lacks of a fair number.
+            // More general tables only fill up to a sufficient number.
             let weight = if enough >= ENOUGH { break } else { (ENOUGH - enough) / all.max(ENOUGH) };
             let weight = if enough == 0.0 { 1.0 } else { weight };
             shares.iter().for_each(|(key, count)| *found.entry(key).or_default() += count * weight);
@@ -135,7 +138,7 @@ impl Wording {
         found.into_iter().collect()
     }
 
-    /// The word for a room or a thing, by how often people use it.
+    /// Draws the word for a room or a thing, by how often people use it.
     pub fn called<'a>(&'a self, name: &'a str, rng: &mut ChaCha8Rng) -> &'a str {
         drawn(self.table(&format!("{ROOMS}{name}")).iter().map(|(key, share)| (key.as_str(), *share)), rng)
             .unwrap_or(name)
@@ -146,7 +149,7 @@ impl Wording {
 pub(super) const VERBS: &str = "do ";
 /// The prefix of the tables of words for rooms and things.
 pub(super) const ROOMS: &str = "call ";
-/// So many tasks on one kind of thing say well enough what people do with it.
+/// This many tasks on one kind of thing suffice to know what people do with it.
 const ENOUGH: f64 = 30.0;
 
 /// The table of verbs of a kind of thing.

@@ -1,42 +1,42 @@
-//! What a text draws by chance. Each draw has a name, so that no draw depends on those before it: what a thing draws stays as it
-//! is where another thing comes or goes.
+//! Random draws of a text by name. Each name has its own random generator, so a draw does not depend on the draws
+//! before it: if one thing of the walk changes, the words for the others stay the same.
 
 use super::{Brief, Complaint};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use wayword_core::{Check, Verdict, rng, seed};
 
-/// Draws by name.
+/// The source of all random draws of one text.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dice {
     seed: u64,
 }
 
 impl Dice {
-    /// The draws of one text. Where only landmarks of earlier texts were wrong, it draws what they drew, and the writer
-    /// avoids the landmarks.
+    /// The draws of one text. If an earlier text failed only because of its landmarks, the next one draws the same
+    /// values and avoids these landmarks.
     pub(super) fn of(brief: &Brief<'_>) -> Self {
         let (attempt, candidate) = (drawn_before(brief.complaints).to_string(), brief.candidate.to_string());
         let names = ["rules", &brief.style.name, &brief.walk.path.id, &attempt, &candidate];
         Self { seed: seed::derive(brief.seed, &names) }
     }
 
-    /// Other draws by the same names.
+    /// A source of other values for the same names.
     pub(super) fn other(self, number: usize) -> Self {
         Self { seed: seed::derive(self.seed, &["other", &number.to_string()]) }
     }
 
-    /// What is drawn by some names.
+    /// The random generator for a draw with these names.
     pub(super) fn by(self, names: &[&str]) -> ChaCha8Rng {
         rng(self.seed, names)
     }
 
-    /// A share from 0 to 1 for the place of that number among several: places in a row get shares that lie apart.
+    /// A value from 0 to 1 for the place with this number. Consecutive places get values far apart.
     pub(super) fn in_turn(self, purpose: &str, number: usize) -> f64 {
         (self.by(&[purpose]).random_range(0.0..1.0) + number as f64 * GOLDEN).fract()
     }
 
-    /// What is drawn for one purpose at a frame.
+    /// The random generator for one purpose at a frame.
     pub(super) fn at(self, purpose: &str, frame: usize) -> ChaCha8Rng {
         self.by(&[purpose, &frame.to_string()])
     }
@@ -45,7 +45,8 @@ impl Dice {
 /// Multiples of the golden ratio, without their whole parts, spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// How many of the earlier texts have to be drawn anew: those with other faults than landmarks, and those that came twice.
+/// Number of earlier texts after which everything is drawn anew: those with other faults than landmarks, and repeated
+/// ones.
 fn drawn_before(complaints: &[Complaint]) -> usize {
     let has_other_faults = |complaint: &Complaint| {
         let mut faults = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);

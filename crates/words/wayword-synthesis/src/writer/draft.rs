@@ -1,4 +1,5 @@
-//! A text in the making: its clauses in words and what joins them, each of which can be said in another way.
+//! A draft of a text: its clauses in words and the joints between them. Each phrase or joint can be replaced, for
+//! example because it copies a reference.
 
 use super::{
     Brief,
@@ -16,7 +17,7 @@ pub(super) struct Draft<'a> {
     told: Vec<Clause>,
     phrases: Vec<Phrase>,
     joints: Vec<Joint>,
-    /// How often each was said anew.
+    /// How often each phrase was replaced.
     times: Vec<usize>,
     names: Names<'a>,
     /// Whether its last phrase is a task, which stays as it is.
@@ -57,7 +58,8 @@ impl<'a> Draft<'a> {
         (text, starts)
     }
 
-    /// Says a phrase of those within a span in another way, or joins it in another way: the one that was said anew least often.
+    /// Replaces the words or the joint of one phrase within a span of the text: the phrase that was replaced least
+    /// often.
     pub(super) fn reword(&mut self, span: [usize; 2], starts: &[usize], brief: &Brief<'_>, dice: Dice) {
         let first = starts.iter().rposition(|start| *start <= span[0]).unwrap_or(0);
         let end = starts.iter().position(|start| *start >= span[1]).unwrap_or(starts.len()).max(first + 1);
@@ -80,7 +82,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// A joint that begins a sentence where the one before did.
+    /// Draws another joint; it begins a sentence if the old one did.
     fn other_joint(&self, at: usize, brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Joint {
         let old = self.joints[at];
         let fits = |joint: &Joint| {
@@ -92,7 +94,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// What joins the phrases into sentences, as the style joins them.
+/// Draws the joints between the phrases with the style's shares, and keeps to its number of sentences.
 fn joints(told: &[Clause], phrases: &[Phrase], brief: &Brief<'_>, dice: Dice) -> Vec<Joint> {
     let constraints = &brief.style.constraints;
     let least = constraints.min_sentences.unwrap_or(1);

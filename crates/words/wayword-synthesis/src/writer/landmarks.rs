@@ -1,4 +1,7 @@
-//! Which of the things that are remembered are worth naming.
+//! Chooses which things of a walk's memory a text names as landmarks, and where.
+//!
+//! Every kind of thing has one home: the spot of the text that it suits best. Each spot then names the best of the
+//! things at home there. So a thing that comes or goes changes the text in its own spot only.
 
 use super::{Brief, dice::Dice};
 use rand::Rng;
@@ -10,31 +13,31 @@ use wayword_language::lexicon::{Class, Thing, agree, is_fabric, is_room, kinds, 
 /// Chooses landmarks, each kind of thing once in a text.
 pub(super) struct Landmarks<'a> {
     brief: &'a Brief<'a>,
-    /// The names that are told otherwise: that of the target.
+    /// Names that other parts of the text use: that of the target.
     reserved: Vec<String>,
     avoided: Vec<String>,
     dice: Dice,
 }
 
-/// Where things are looked for: at a frame, from a salience on, for one use.
+/// A search for a thing: at a frame, with a least salience, for one use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Search {
     /// The frame.
     pub(super) frame: usize,
     /// The least salience.
     pub(super) salience: u8,
-    /// What for.
+    /// The use of the landmark.
     pub(super) to: Use,
 }
 
-/// A place in a text at which a thing may be told.
+/// A spot of a text that may name a thing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Spot {
-    /// Where things are looked for; of a thing that several find, the first counts.
+    /// The searches for a thing, in order; if several find the same thing, the first counts.
     pub(super) searches: Vec<Search>,
-    /// Whether a second thing beside it is told with it.
+    /// Whether a second thing near it is named with it.
     pub(super) pair: bool,
-    /// Whether it only stands in for another spot.
+    /// Whether it is only used if another spot finds no thing.
     pub(super) is_spare: bool,
 }
 
@@ -47,79 +50,79 @@ pub(super) struct Landmark {
     pub(super) name: String,
     /// Its colour, where it is known.
     pub(super) colour: Option<String>,
-    /// Whether another of its name is seen there in another colour.
+    /// Whether another thing of this name with another colour is seen there.
     pub(super) needs_colour: bool,
     /// How many of its name and colour are seen there.
     pub(super) alike: usize,
     /// The side of the walker on which it is from the frame for which it was chosen.
     pub(super) side: Option<Side>,
-    /// Whether it lies before somebody who arrives at that frame, as far as is known.
+    /// Whether it lies in front of a walker who arrives at that frame, as far as is known.
     pub(super) in_front: bool,
-    /// The side on which one passes it, and from which frame.
+    /// The frame at which the walker passes it, and the side.
     pub(super) passed: Option<(usize, Side)>,
-    /// The name of another thing beside it, told with it: "the table and chairs".
+    /// The name of another thing near it that is named with it: "the table and chairs".
     pub(super) with: Option<String>,
 }
 
-/// A landmark is said at a frame that is no farther from it than this, metres.
+/// Greatest distance of a landmark from the frame where it is named, metres.
 const NEAR_M: f64 = 2.5;
-/// One stops at a thing that is no farther than this, metres.
+/// Greatest distance of a thing that the walker stops at, metres.
 const STOP_M: f64 = 1.9;
 
-/// A walker who looks ahead sees this far to either side, radians.
+/// How far to either side a walker who looks ahead sees, radians.
 const AHEAD_RAD: f64 = 1.05;
-/// And, who looks around, this far.
+/// The same for a walker who looks around, radians.
 const BESIDE_RAD: f64 = 1.9;
-/// What lies no farther to a side than this is in front of one, radians.
+/// A thing closer to the walking direction than this is in front, radians.
 const IN_FRONT_RAD: f64 = 1.1;
-/// Things of one name are "the two chairs" where they are no farther apart, metres.
+/// Things of one name are "the two chairs" if they are at most this far apart, metres.
 const TOGETHER_M: f64 = 1.5;
-/// What it counts that one stops in front of a thing.
+/// Bonus of a thing in front of the walker at a stop.
 const IN_FRONT: f64 = 1.5;
-/// Things that are told together are no farther apart, metres.
+/// Greatest distance between two things that are named together, metres.
 const BESIDE_M: f64 = 1.5;
 
-/// How much it counts that a style's texts name a thing often, for the logarithm of how often.
+/// Weight of how often a style's texts name a thing, per unit of the natural logarithm.
 const MENTIONED: f64 = 0.7;
-/// How much it counts that a thing is easy to see.
+/// Weight of a thing's salience.
 const SALIENT: f64 = 0.8;
-/// A bed is near within this of its middle more than other things, metres, and what one sits on or eats at within half of it.
+/// Extra reach for wide things, metres: a bed counts as near from this much farther, seats and tables from half of it.
 const WIDE_M: f64 = 1.2;
-/// How much is left to chance.
+/// Upper bound of the random part of a thing's value.
 const CHANCE: f64 = 1.5;
-/// How often much more is.
+/// Share of things with a much larger random part, so that texts differ.
 const RARE: f64 = 0.2;
-/// How much less it counts for each search that found nothing before.
+/// Deduction for each earlier search of the spot that failed.
 const LATER_SEARCH: f64 = 2.0;
-/// How much less it counts at a spot that stands in for another.
+/// Deduction at a spot that replaces another one.
 const SPARE: f64 = 1.0;
-/// How much more a thing is worth where one stops.
+/// Bonus of a thing at the stop of the walk.
 const AT_THE_END: f64 = 0.5;
 
-/// What a landmark is for.
+/// The use of a landmark in a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
-    /// It is named while one is at a frame.
+    /// It is named while the walker is at a frame.
     Here,
-    /// One goes to it, or past it, on the way to a frame.
+    /// The walker goes to it or past it on the way to a frame.
     Onward,
-    /// The same for what shows to the side alone.
+    /// The same for things that are only visible to the side.
     Beside,
-    /// One stops there.
+    /// The walker stops there.
     Stop,
 }
 
-/// A kind of thing at the spot where it is told best.
+/// A kind of thing with its best spot.
 struct At<'a> {
     spot: usize,
     worth: f64,
     seen: &'a Remembered,
-    /// The search that found it; `None` where it is only told beside another thing.
+    /// The search that found it; `None` if it is only named together with another thing.
     found_by: Option<Search>,
 }
 
 impl At<'_> {
-    /// Whether a thing is told better here than at another spot. What one stops at goes before what one passes.
+    /// Whether a thing suits this spot better than another one. The stop takes precedence over things that are passed.
     fn goes_before(&self, other: &Self) -> bool {
         let rank = |at: &At<'_>| (at.found_by.is_some(), at.worth + at.stop_bonus());
         let ((is_found, worth), (other_is_found, other_worth)) = (rank(self), rank(other));
@@ -132,14 +135,14 @@ impl At<'_> {
 }
 
 impl Search {
-    /// Where a second thing beside the one that it found is looked for.
+    /// The search for a second thing near the first.
     fn beside(self) -> Self {
         Self { to: if self.to == Use::Stop { Use::Stop } else { Use::Here }, ..self }
     }
 }
 
 impl<'a> Landmarks<'a> {
-    /// It avoids names about which checks complained in earlier texts, and the target, which the task names.
+    /// Avoids names that checks complained about in earlier texts, and the target, which the task names.
     pub(super) fn new(brief: &'a Brief<'a>, dice: Dice) -> Self {
         let blamed = brief.complaints.iter().flat_map(|complaint| {
             let failed = complaint.findings.iter().filter(|finding| finding.verdict != Verdict::Pass);
@@ -168,8 +171,8 @@ impl<'a> Landmarks<'a> {
         Some(self.landmark(best, frame))
     }
 
-    /// The landmark of each spot, where there is one. Each kind of thing belongs to the one spot where it is told best, whatever
-    /// other things there are, and each spot tells the best of its own: a thing that comes or goes changes no other spot.
+    /// The landmark of each spot, if it has one. Each kind of thing belongs to its best spot, independently of other
+    /// things, and each spot names the best of its own.
     pub(super) fn at(&self, spots: &[Spot]) -> Vec<Option<Landmark>> {
         let mut homes: BTreeMap<String, At<'_>> = BTreeMap::new();
         for seen in &self.brief.memory.things {
@@ -197,7 +200,7 @@ impl<'a> Landmarks<'a> {
             .collect()
     }
 
-    /// The spot where a thing is told best.
+    /// The best spot for a thing.
     fn best_spot(&self, seen: &'a Remembered, spots: &[Spot]) -> Option<At<'a>> {
         let at = |(spot, Spot { searches, pair, is_spare }): (usize, &Spot)| {
             let found = searches.iter().enumerate().find(|(_, search)| self.finds(**search, seen));
@@ -227,17 +230,17 @@ impl<'a> Landmarks<'a> {
             && self.fits(seen, frame, to)
     }
 
-    /// What a thing is worth as the landmark that a search finds.
+    /// The value of a thing as the landmark of a search.
     fn worth(&self, seen: &Remembered, Search { frame, to, .. }: Search) -> f64 {
         let kind = kind(&seen.name);
-        // Now and then anything will do, so that texts differ.
+        // Now and then the random part dominates, so that texts differ.
         let chance = if self.dice.by(&["rare", &kind]).random_bool(RARE) { 4.0 * CHANCE } else { CHANCE };
         let ahead = if to == Use::Stop && is_in_front(seen, frame) { IN_FRONT } else { 0.0 };
         let mut drawn = self.dice.by(&["thing", &kind]);
         self.score(seen, frame) + ahead + drawn.random_range(0.0..chance)
     }
 
-    /// Another thing of the same spot that lies beside a thing.
+    /// The name of another thing of the same spot near the landmark.
     fn beside<'b>(
         &self,
         landmark: &Remembered,
@@ -272,11 +275,12 @@ impl<'a> Landmarks<'a> {
             Use::Beside => was_seen(seen, frame, BESIDE_RAD) && is_passed(seen, frame),
             Use::Stop => side != Some(Side::Behind) && !hangs_overhead(&seen.name),
         };
-        // Without positions nobody knows what lies where.
+        // Without positions the directions of things are unknown.
         is_near && (is_there || side.is_none())
     }
 
-    /// Salient things that people name, near the frame, and few of their name.
+    /// The fixed part of a thing's value: high for salient things that people often name, that are near the frame and
+    /// rare in the walk.
     fn score(&self, seen: &Remembered, frame: usize) -> f64 {
         let memory = self.brief.memory;
         let known = thing(&seen.name);
@@ -323,42 +327,42 @@ impl<'a> Landmarks<'a> {
     }
 }
 
-/// The kind of a thing, by which it draws: the same from other frames, on other platforms, and whatever else is seen.
+/// The kind of a thing, which names its random draws: it is the same from other frames and on other platforms.
 fn kind(name: &str) -> String {
     kinds(name).swap_remove(0)
 }
 
-/// Whether a name reads as a landmark: known as one, and not a room's or a list's name.
+/// Whether a name is suitable for a landmark: known as a thing that helps, and not the name of a room or list.
 fn is_tellable(name: &str, salience: u8) -> bool {
     let plain =
         name.len() <= 30 && name.chars().all(|c| c.is_alphabetic() || c == ' ' || c == '-') && !name.contains(" and ");
     let is_fixed = |class: Class| matches!(class, Class::Door | Class::Stairs | Class::Switch);
-    // Lamps are landmarks, and lights are everywhere.
+    // Lamps are landmarks; other lights are too common.
     let is_faint = |thing: &Thing| thing.salience == 1 && thing.class == Class::Light;
     let tells =
         thing(name).is_some_and(|thing| thing.salience >= salience && !is_fixed(thing.class) && !is_faint(thing));
     plain && !is_room(&normal(name)) && !is_fabric(name) && tells
 }
 
-/// Whether a walker who looks so far to either side has seen a thing by the time of a frame, as far as is known. What only
-/// shows behind a walker is no landmark.
+/// Whether a walker who looks this far to either side has seen a thing by the time of a frame, as far as is known. A
+/// thing that is only visible behind the walker is no landmark.
 fn was_seen(seen: &Remembered, frame: usize, aside_rad: f64) -> bool {
     let within = |turn_rad: Option<f64>| turn_rad.is_none_or(|turn_rad| turn_rad.abs() <= aside_rad);
     seen.glimpses.iter().any(|glimpse| glimpse.frame <= frame && within(glimpse.turn_rad))
 }
 
-/// Whether nobody stops at a thing of that name, because it is above one.
+/// Whether a thing hangs overhead, so that a walker does not stop at it.
 fn hangs_overhead(name: &str) -> bool {
     let is_lamp_by_hand = |name: &str| name.ends_with("lamp");
     thing(name).is_some_and(|thing| thing.class == Class::Light) && !is_lamp_by_hand(name)
 }
 
-/// Whether one passes a thing shortly before a frame, or there.
+/// Whether the walker passes a thing at a frame or shortly before it.
 fn is_passed(seen: &Remembered, frame: usize) -> bool {
     seen.passed.is_some_and(|passed| passed.frame <= frame && passed.frame + 2 > frame)
 }
 
-/// Whether a thing lies before somebody who arrives at a frame, as far as is known.
+/// Whether a thing lies in front of a walker who arrives at a frame, as far as is known.
 fn is_in_front(seen: &Remembered, frame: usize) -> bool {
     let turn_rad = seen.glimpse(frame).and_then(|glimpse| glimpse.turn_rad);
     turn_rad.is_none_or(|turn_rad| turn_rad.abs() < IN_FRONT_RAD)

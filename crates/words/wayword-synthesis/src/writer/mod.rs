@@ -1,4 +1,9 @@
-//! Writing: what a writer gets, and the writer that works by rules.
+//! The interface of writers, their input ([`Brief`]), and the writer that works by rules ([`RulesWriter`]).
+//!
+//! The rules writer goes from a plan to words: `route` plans clauses from the turns, doors and rooms of the walk;
+//! `landmarks` chooses things for the places that the plan offers; `naming` and `draft` put the clauses into the words
+//! of the style. For ways and for places, a module of its own tries several versions and takes the one that fits the
+//! style's length and copies no reference.
 
 mod dice;
 mod draft;
@@ -19,8 +24,9 @@ use wayword_core::{Finding, Image, ModelError, Style, rng};
 
 pub use rules::RulesWriter;
 
-/// People say more of a place than labels show, such as how things look. Texts that name a place are as long as this share of
-/// a style's texts, the shorter ones: longer ones would only pile up what tells a target apart.
+/// Texts that name a place draw their length from this share of a style's lengths, the shorter ones. People mention
+/// more of a place than labels show, such as its looks; with labels alone, a long text would only pile up properties of
+/// the target.
 const SHORTER: f64 = 0.55;
 
 /// Writes instructions.
@@ -31,30 +37,30 @@ pub trait Writer: Send + Sync {
     /// A text for the brief.
     ///
     /// # Errors
-    /// When the walk gives nothing to write about, or a model gave nothing that can be used.
+    /// When the walk offers no object for a required task, or a model gave no usable text.
     fn write(&self, brief: &Brief<'_>) -> Result<String, WriteError>;
 }
 
-/// All that a writer gets.
+/// The input of a writer for one text.
 #[derive(Debug, Clone, Copy)]
 pub struct Brief<'a> {
     /// The path and what was seen along it; its target, where one is given.
     pub walk: &'a Walk,
-    /// What stays in mind of the walk.
+    /// The memory of the walk.
     pub memory: &'a Memory,
     /// The style to write in.
     pub style: &'a Style,
-    /// What the style's references are like.
+    /// The measured properties of the style's references.
     pub profile: &'a Profile,
     /// The run's seed.
     pub seed: u64,
-    /// Which of several texts for the walk it is, from 0: each is another draw.
+    /// The number of this candidate among several texts for the walk, from 0. Each draws anew.
     pub candidate: u32,
-    /// What was wrong with earlier texts for this walk, oldest first.
+    /// Earlier failed texts for this walk with their findings, oldest first.
     pub complaints: &'a [Complaint],
     /// Texts that this walk already has, in the same style: this one has to differ.
     pub earlier: &'a [String],
-    /// Pictures of frames, for a writer that sees; in the order of the frames.
+    /// Pictures of frames, for a vision model; in the order of the frames.
     pub pictures: &'a [FramePicture],
 }
 
@@ -63,24 +69,24 @@ pub struct Brief<'a> {
 pub struct FramePicture {
     /// Number of the frame.
     pub frame: usize,
-    /// What is seen ahead of it.
+    /// The picture in walking direction.
     pub image: Arc<Image>,
 }
 
 impl<'a> Brief<'a> {
-    /// A first text for a walk: nothing was written yet, and no pictures are shown.
+    /// The brief of a first text for a walk, without earlier texts and pictures.
     #[must_use]
     pub fn new(walk: &'a Walk, memory: &'a Memory, style: &'a Style, profile: &'a Profile, seed: u64) -> Self {
         Self { walk, memory, style, profile, seed, candidate: 0, complaints: &[], earlier: &[], pictures: &[] }
     }
 
-    /// How many words the text should have. All candidates for a walk share it, so that the choice among them does not
-    /// change how long the style's texts are.
+    /// Number of words that the text should have. It is the same for all candidates of a walk, so that the choice among
+    /// them does not change the distribution of lengths.
     fn length(&self) -> usize {
         self.length_among(&self.profile.words)
     }
 
-    /// The same, among the shorter of its style's lengths, where the style does not say itself how long its texts are.
+    /// The same, drawn from the shorter lengths of the style, unless the style gives its lengths explicitly.
     fn shorter_length(&self) -> usize {
         let words = &self.profile.words;
         let shorter = (words.len() as f64 * SHORTER).ceil() as usize;
@@ -97,7 +103,7 @@ impl<'a> Brief<'a> {
 pub struct Complaint {
     /// The text.
     pub text: String,
-    /// What was wrong with it.
+    /// What the checks found.
     pub findings: Vec<Finding>,
 }
 
@@ -114,10 +120,10 @@ pub enum WriteError {
     Unusable {
         /// The text.
         text: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
-    /// The model that writes gave nothing.
+    /// The writing model failed.
     #[error(transparent)]
     Model(#[from] ModelError),
 }

@@ -1,4 +1,4 @@
-//! The clauses of a way in words: their shapes, and one name for each room and thing.
+//! Puts the clauses of a way into words: draws a shape for each, and one name for each room and thing of the text.
 
 use super::{
     Brief,
@@ -16,40 +16,41 @@ use wayword_language::lexicon::{counted, plural, room_name, thing};
 /// A clause in words.
 pub(super) struct Phrase {
     pub(super) text: String,
-    /// Whether it begins with its verb, so that "and" begins a clause before it.
+    /// Whether it begins with a verb, so that it can follow "and".
     pub(super) is_clause: bool,
 }
 
-/// How often a colour is said of a thing that needs none to be told from others.
+/// Share of things that get a colour although they do not need one.
 const COLOURED: f64 = 0.25;
 
-/// Whether a clause may tell to go out: it names what it leaves, or its door leads out of the first room and not into the last.
+/// Whether a shape with "exit" or "out" fits a clause: it names the room that it leaves, or its door leads out of the
+/// first room and not into the last.
 fn goes_out(clause: &Clause, brief: &Brief<'_>) -> bool {
     let openings = &brief.memory.openings;
     let is_first = openings.len() > 1 && openings[0].before == clause.at;
     clause.from.is_some() || is_first || !matches!(clause.kind, Kind::ThroughDoor | Kind::DoorOnSide | Kind::ToDoor)
 }
 
-/// Who has walked no farther into a room is just inside, metres.
+/// Distance into a room up to which the walker is "just inside", metres.
 const STEP_M: f64 = 2.5;
 
-/// How far one has walked in the room of a frame, metres.
+/// Length of the way in the room of a frame up to it, metres.
 fn walked_in_m(at: usize, brief: &Brief<'_>) -> f64 {
     let before = brief.memory.stay(at).map_or(0, |stay| stay.entered.saturating_sub(1));
     brief.walk.walked_m(before, at)
 }
 
-/// What the place of a clause in its text asks of its shape.
+/// The demands of a clause's context on its shape.
 #[derive(Clone, Copy)]
 struct Needs {
     motion: Motion,
     /// Whether it has to name its room.
     names_room: bool,
-    /// Whether one goes out of the room of the start, or the clause names the room that one leaves.
+    /// Whether it leaves the room of the start, or names the room that it leaves.
     leaves: bool,
-    /// Whether one is no more than a step behind the door of its room.
+    /// Whether the walker is at most a step behind the door of its room.
     is_near_door: bool,
-    /// Whether it may say how far the clause before it goes.
+    /// Whether it may limit the clause before it ("until you reach ...").
     may_run: bool,
 }
 
@@ -74,7 +75,7 @@ impl<'a> Names<'a> {
         }
         let motion = brief.walk.path.motion;
         let before = at.checked_sub(1).map(|before| told[before].kind).filter(|_| !clause.follows_offer);
-        // A thing says how far one goes where nothing else was said of that, so that a text without it is whole.
+        // A thing may limit a plain "go straight", so that the text stays complete without the thing.
         let follows = match clause.thing {
             Some(_) => before == Some(Kind::Straight),
             None => before.is_some_and(Kind::goes_on),
@@ -121,7 +122,7 @@ impl<'a> Names<'a> {
         let ahead = clause.thing.as_ref().is_none_or(|thing| thing.in_front);
         let usual = clause.room.as_deref().and_then(room_name);
         let is_open_air = matches!(usual, Some("porch" | "balcony" | "outdoor area"));
-        // "The room" is no hallway, and nobody leaves a porch by it.
+        // A hallway is not called "the room", and a porch has no walls to leave it by.
         let has_walls = !is_open_air && !matches!(usual, Some("hallway" | "entryway"));
         let is_room = |shape: &str| {
             let names_none = shape.split(' ').any(|word| word == "room");
@@ -150,7 +151,7 @@ impl<'a> Names<'a> {
         self.name(room, room_name(room).and_then(|usual| self.way.rooms.get(usual)))
     }
 
-    /// A label that says more than the usual name ("round table") often stays as it is.
+    /// A label that is more precise than the usual name ("round table") often stays as it is.
     fn thing(&mut self, name: &str) -> String {
         let names = thing(name).and_then(|thing| self.way.things.get(thing.name));
         let says_more = names.is_some_and(|names| !names.contains_key(name));
@@ -170,8 +171,8 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Whether a clause has to name its room, because it is "the room" to nobody: it is the end's, or it is told of later, or
-/// nothing named it before.
+/// Whether a clause has to name its room, because "the room" would be unclear: it is the room of the end, a later
+/// clause mentions it, or no earlier clause named it.
 fn has_to_name(told: &[Clause], at: usize, brief: &Brief<'_>) -> bool {
     let Some(room) = &told[at].room else { return false };
     let speaks_of_it = |clause: &Clause| clause.room.as_ref() == Some(room) || clause.from.as_ref() == Some(room);
@@ -179,7 +180,7 @@ fn has_to_name(told: &[Clause], at: usize, brief: &Brief<'_>) -> bool {
     match told[at].kind {
         Kind::Leave | Kind::LeaveByDoor => at > 0 && !before,
         Kind::StopIn => !before,
-        // What stands in it tells which it is.
+        // The thing in the room identifies it.
         Kind::EnterWith => after,
         _ => after || brief.memory.room(brief.memory.frames().saturating_sub(1)) == Some(room),
     }
@@ -196,18 +197,19 @@ fn plain(kind: Kind) -> &'static str {
     }
 }
 
-/// About how many words the clauses of each kind have.
+/// Estimates the number of words of clauses from the mean length of their shapes.
 pub(super) struct Lengths<'a> {
     way: &'a Way,
     known: BTreeMap<Kind, f64>,
 }
 
-/// Words that join a clause to the one before, in the mean.
+/// Mean number of words that join a clause to the one before.
 const JOINT_WORDS: f64 = 0.6;
-/// Words for a second thing, where half of the places that may tell one do, and for a side.
+/// Expected words for a second thing, which half of the places with that option have, and words for a side.
 const PAIR_WORDS: f64 = 1.0;
 const SIDE_WORDS: f64 = 2.0;
-/// The share of places for things that have one. What is seen must not change it, so it is a fixed number.
+/// The assumed share of places for things that get one. It is fixed, so that the plan does not depend on the things
+/// that are seen.
 const WITH_A_THING: f64 = 0.6;
 
 impl<'a> Lengths<'a> {
@@ -215,7 +217,7 @@ impl<'a> Lengths<'a> {
         Self { way, known: BTreeMap::new() }
     }
 
-    /// The words of a plan of whose places for things such a share has one.
+    /// Number of words of a plan if this share of its places for things gets one.
     fn sum(&mut self, plan: &[Clause], with_a_thing: f64) -> f64 {
         let all = plan.iter().map(|clause| {
             let (with, without) = self.with_and_without(clause);
@@ -229,7 +231,7 @@ impl<'a> Lengths<'a> {
         self.sum(plan, WITH_A_THING)
     }
 
-    /// How many words it has where each place has a thing.
+    /// Number of words of a plan if every place gets a thing.
     pub(super) fn most(&mut self, plan: &[Clause]) -> f64 {
         self.sum(plan, 1.0)
     }

@@ -1,4 +1,4 @@
-//! The object of the task, in words: its name, and what tells it from everything else.
+//! Words for the object of the task: its name, and the properties that distinguish it from other objects.
 
 use crate::{
     style::Wording,
@@ -11,10 +11,10 @@ use std::collections::BTreeMap;
 use wayword_core::{Description, Distinction, Relation, Side};
 use wayword_language::lexicon::{agree, is_plural};
 
-/// The object, with all that can be said of it.
+/// The object of the task with its possible descriptions.
 pub(super) struct Said<'a> {
     pub(super) name: String,
-    /// What it is called in this text.
+    /// Its name in this text.
     called: String,
     descriptions: &'a [Description],
     told_by: &'a [Distinction],
@@ -22,7 +22,7 @@ pub(super) struct Said<'a> {
     hangs: bool,
 }
 
-/// How much oftener "on the wall" is said of things that hang there than of all.
+/// How much more often "on the wall" is used for hanging things than for all things.
 const OF_HANGING: f64 = 10.0;
 
 impl<'a> Said<'a> {
@@ -45,8 +45,8 @@ impl<'a> Said<'a> {
         })
     }
 
-    /// What is said of the object beside its name: by the shares of the style, among what pins it down, or, where it need
-    /// not be sure, among everything. `more` asks for a longer one.
+    /// Draws a description of the object: if `is_sure`, one that fits no other object, with the shares of the style;
+    /// otherwise anything true. `more` asks for additional properties.
     pub(super) fn description(
         &self,
         wording: &Wording,
@@ -60,7 +60,7 @@ impl<'a> Said<'a> {
             self.descriptions.iter().map(|description| description.by.as_slice()).collect()
         };
         let mut by: Vec<&Distinction> = if is_sure { draw(&all, wording, rng).iter().collect() } else { Vec::new() };
-        // What else is true of it makes it no less clear, if it is of another kind.
+        // Additional properties of another kind do not make it less clear.
         let said_of = |by: &[&Distinction], of: &dyn Fn(&Distinction) -> bool| by.iter().any(|by| of(by));
         let extra = if is_sure { more } else { more.max(usize::from(rng.random_bool(wording.share("object")))) };
         for _ in 0..extra {
@@ -85,7 +85,8 @@ impl<'a> Said<'a> {
         by
     }
 
-    /// What tells the object from its namesakes where the path ends; of an only one, something as often as people say it.
+    /// Draws a property that distinguishes the object from its namesakes in view at the end. An object without
+    /// namesakes gets one as often as people mention one.
     pub(super) fn in_view(&self, wording: &Wording, rng: &mut ChaCha8Rng) -> Vec<&'a Distinction> {
         let says = self.has_namesake || rng.random_bool(wording.share("object"));
         let told: Vec<&[Distinction]> = self.told_by.iter().map(std::slice::from_ref).collect();
@@ -121,7 +122,8 @@ impl<'a> Said<'a> {
     }
 }
 
-/// One of several descriptions. People choose first which kinds of thing to say; of those of one kind, the cheaper.
+/// Draws one of several descriptions: first the combination of kinds of properties, by how likely people use it, then
+/// one description of it, cheaper ones more often.
 fn draw<'a>(all: &[&'a [Distinction]], wording: &Wording, rng: &mut ChaCha8Rng) -> &'a [Distinction] {
     let mut of_kind: BTreeMap<Vec<&str>, Vec<&'a [Distinction]>> = BTreeMap::new();
     for by in all {
@@ -134,7 +136,7 @@ fn draw<'a>(all: &[&'a [Distinction]], wording: &Wording, rng: &mut ChaCha8Rng) 
     weighed(&cheaper, rng).map_or(&[], |at| kinds[kind][at])
 }
 
-/// How likely people of the style say just this of an object and its room.
+/// How likely a text of the style uses exactly these properties of an object and its room.
 fn likelihood(by: &[Distinction], wording: &Wording) -> f64 {
     let told = wording.table("told");
     let all: f64 = told.values().sum::<f64>().max(1e-9);
@@ -145,9 +147,9 @@ fn likelihood(by: &[Distinction], wording: &Wording) -> f64 {
         Distinction::RoomBy { .. } => odds("room by") * 0.6,
         Distinction::RoomWith { .. } => odds("room with") * 0.25,
         Distinction::OnSide { .. } => odds("object") * share("side") * 2.0,
-        // Near something are most things: of the descriptions that pin a target down, most have it.
+        // "Near" is almost always possible: of the descriptions that single a target out, most contain it.
         Distinction::Related { relation: Relation::Near, .. } => odds("object") * share("near") * 1.2,
-        // Its share is that of both sides.
+        // The measured share is for both sides together.
         Distinction::Related { relation: Relation::LeftOf | Relation::RightOf, .. } => {
             odds("object") * share("beside") * 1.5
         }
@@ -156,7 +158,7 @@ fn likelihood(by: &[Distinction], wording: &Wording) -> f64 {
     by.iter().map(one).product()
 }
 
-/// The table of constructions for what is said of an object.
+/// The name of the table of constructions for a property.
 fn table(by: &Distinction) -> &'static str {
     match by {
         Distinction::NextTo { .. } => "closest",

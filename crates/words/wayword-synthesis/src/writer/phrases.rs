@@ -1,4 +1,5 @@
-//! Words that the writers of ways and places share. `{s}` is a side, `{l}` a landmark, `{r}` a room.
+//! Helpers for words and random choices that the writers of ways and of places share. In templates `{s}` is a side,
+//! `{l}` a landmark, `{r}` a room.
 
 use crate::weighed::weighed;
 use rand::Rng;
@@ -14,7 +15,7 @@ pub(super) fn pick<'a, T: ?Sized>(rng: &mut ChaCha8Rng, of: &[&'a T]) -> &'a T {
     of[rng.random_range(0..of.len())]
 }
 
-/// The ways to say a step that fit a motion: where the motion is unknown, none says "straight".
+/// The phrases that fit a motion: without "straight" if the motion is unknown.
 pub(super) fn unbent(of: &[&'static str], motion: Motion) -> Vec<&'static str> {
     of.iter().copied().filter(|way| motion.is_known() || !way.contains("straight")).collect()
 }
@@ -28,7 +29,7 @@ pub(super) fn the(room: &str) -> String {
 pub(super) fn draw<T: Clone>(of: &[(f64, T)], rng: &mut ChaCha8Rng) -> Option<T> {
     let some: Vec<&(f64, T)> = of.iter().filter(|(weight, _)| *weight > 0.0).collect();
     let weights: Vec<f64> = some.iter().map(|(weight, _)| *weight).collect();
-    // Where nothing can be drawn, no random number is used up.
+    // If there is no option, no random number is consumed.
     let at = if weights.is_empty() { None } else { weighed(&weights, rng) };
     at.map(|at| some[at].1.clone())
 }

@@ -1,7 +1,7 @@
 //! A text that names the place at the end, and what to do there.
 //!
-//! Several drafts are made by the shares of the style's wording. The one is kept that says surely which object is meant,
-//! copies nobody, and comes nearest to a length that is drawn from the references.
+//! Several drafts are drawn with the shares of the style's wording. The one is chosen that identifies the object,
+//! copies no reference, and comes nearest to a length drawn from the references.
 
 mod room;
 
@@ -21,10 +21,10 @@ use wayword_checks::Matter;
 use wayword_core::Climb;
 use wayword_language::text::{capital, word_count};
 
-/// How many drafts are made of a text, and how often at most it is planned.
+/// Number of drafts for each plan, and most plans.
 const DRAFTS: usize = 30;
 const PLANS: usize = 4;
-/// Faults of a draft, as words by which its length is off.
+/// Cost of a fault of a draft, in words of length difference.
 const NEVER: f64 = 1000.0;
 const RATHER_NOT: f64 = 100.0;
 
@@ -33,7 +33,7 @@ pub(super) fn the_place(brief: &Brief<'_>, dice: Dice) -> Result<String, WriteEr
     let rng = &mut dice.by(&["place"]);
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
-    // A target is there to be asked for, where the style asks for anything.
+    // A target is meant for a task, so the text has one if the style has any.
     let asks = brief.style.constraints.ends_in_task
         || brief.profile.tasks >= 0.5 && walk.path.target.is_some()
         || rng.random_bool(brief.profile.tasks.clamp(0.0, 1.0));
@@ -49,7 +49,7 @@ pub(super) fn the_place(brief: &Brief<'_>, dice: Dice) -> Result<String, WriteEr
     let matter = Matter { target: Some(&object.name), rooms: &rooms };
     let copies = &brief.profile.copies;
     let mut best: Option<(f64, String)> = None;
-    // Where every draft has words in a row that a reference has too, it is planned again.
+    // If every draft shares a run of words with a reference, a new plan is drawn.
     for _ in 0..PLANS {
         let plan = Plan::draw(brief, &goal, words, rng);
         for _ in 0..DRAFTS {
@@ -71,21 +71,21 @@ pub(super) fn the_place(brief: &Brief<'_>, dice: Dice) -> Result<String, WriteEr
     Ok(format!("{}{}", capital(&text), if full_stop { "." } else { "" }))
 }
 
-/// What is decided of a text before it is drafted, so that the choice among drafts does not change the style's shares.
+/// Decisions that are drawn before the drafts, so that the choice among drafts does not change the style's shares.
 #[derive(Clone, Copy)]
 struct Plan<'a> {
     order: &'a str,
     opener: &'a str,
     names_level: bool,
     is_sure: bool,
-    /// How much more it says than it needs, to be long enough.
+    /// Number of properties beyond the necessary ones, for a longer text.
     more: usize,
     please: bool,
 }
 
-/// A text of fewer words need not pin its target down.
+/// A text with fewer words than this need not single its target out.
 const SHORT: usize = 8;
-/// From so many words on, a text says one thing more than it needs, or two, or three.
+/// Lengths, words, from which on a text has one, two or three properties more than necessary.
 const LONG: [usize; 3] = [16, 20, 25];
 
 impl<'a> Plan<'a> {
@@ -102,7 +102,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// One way to put the text, in lower case and without a full stop.
+/// A draft of the text, in lower case and without a full stop.
 fn draft(brief: &Brief<'_>, goal: &Goal<'_>, object: &Said<'_>, plan: Plan<'_>, rng: &mut ChaCha8Rng) -> String {
     let wording = &brief.profile.wording;
     let by = object.description(wording, plan.is_sure, plan.more, rng);
@@ -117,7 +117,7 @@ fn draft(brief: &Brief<'_>, goal: &Goal<'_>, object: &Said<'_>, plan: Plan<'_>, 
     if plan.please { format!("please {text}") } else { text }
 }
 
-/// A text without a task, or to an end whose room has no name.
+/// A text without a task, or for an end without a known room.
 fn bare(brief: &Brief<'_>, asks: bool, dice: Dice) -> Result<String, WriteError> {
     let rng = &mut dice.by(&["place"]);
     let mut landmarks = Landmarks::new(brief, dice);
@@ -146,7 +146,7 @@ fn bare(brief: &Brief<'_>, asks: bool, dice: Dice) -> Result<String, WriteError>
     Ok(format!("{}{}", capital(&text), if full_stop { "." } else { "" }))
 }
 
-/// The way to an end whose room has no name.
+/// The words for the way to an end without a known room.
 fn without_room(brief: &Brief<'_>, landmarks: &Landmarks<'_>, rng: &mut ChaCha8Rng) -> String {
     let walk = brief.walk;
     let last = walk.path.frames.len() - 1;
@@ -182,7 +182,7 @@ fn sentence_target(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> usize {
     drawn(&brief.profile.sentences, rng).clamp(least, constraints.max_sentences.unwrap_or(usize::MAX).max(least))
 }
 
-/// Phrases as sentences, shared out evenly, in their order.
+/// Distributes phrases evenly over sentences, in their order.
 fn sentences(phrases: &[String], count: usize, full_stop: bool, rng: &mut ChaCha8Rng) -> String {
     let count = count.clamp(1, phrases.len().max(1));
     let bounds: Vec<usize> = (0..=count).map(|at| at * phrases.len() / count).collect();
@@ -194,7 +194,7 @@ fn sentences(phrases: &[String], count: usize, full_stop: bool, rng: &mut ChaCha
     text
 }
 
-/// Phrases as one sentence without its full stop. Where a phrase has an "and" of its own, "then" joins them.
+/// Joins phrases into one sentence without its full stop. If a phrase contains "and", they are joined by "then".
 fn join(phrases: &[String], rng: &mut ChaCha8Rng) -> String {
     let Some((last, before)) = phrases.split_last() else { return String::new() };
     if before.is_empty() {

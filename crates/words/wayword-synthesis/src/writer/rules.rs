@@ -1,9 +1,9 @@
-//! The writer that works by rules, which follow what a style's references are like.
+//! The writer that works by rules; their parameters are measured on a style's references.
 
 use super::{Brief, WriteError, Writer, dice::Dice, place::the_place, telling};
 
-/// Writes from captions and moves. Where the references name turns, it describes the way step by step; where they
-/// don't, it names the place at the end. Length, sentences, storeys, task and full stop are drawn from the references
+/// Writes from captions and moves. If the references mention turns, it describes the way step by step; otherwise it
+/// names the place at the end. Length, sentences, storeys, task and full stop are drawn from the measured references
 /// too.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RulesWriter;

@@ -1,4 +1,4 @@
-//! The closing task: what one can do with a thing.
+//! Writes the closing task of an instruction ("... and dust the lamp") and chooses its object where no target is given.
 
 use super::{Brief, WriteError, object::Said};
 use rand::Rng;
@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use wayword_core::Verdict;
 use wayword_language::lexicon::{Class, agree, normal, thing};
 
-/// The task of a text, and the name of its object.
+/// Draws a task; returns its words and the name of its object.
 pub(super) fn task(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<(String, String), WriteError> {
     let object = Said::of(brief, rng)?;
     let wording = &brief.profile.wording;
@@ -14,8 +14,7 @@ pub(super) fn task(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<(String, S
     Ok((done(wording.verb(&object.name, 1.0, rng), &phrase), object.name))
 }
 
-/// What is done with an object. A particle stands behind a short object only: "turn the lamp on", "turn on the lamp by
-/// the door".
+/// The words of a task. A particle follows a short object only: "turn the lamp on", but "turn on the lamp by the door".
 pub(super) fn done(verb: &str, object: &str) -> String {
     match verb.split_once(" {o} ") {
         Some((verb, particle)) if object.split(' ').count() > 3 => format!("{verb} {particle} {object}"),
@@ -23,7 +22,8 @@ pub(super) fn done(verb: &str, object: &str) -> String {
     }
 }
 
-/// An object for the task that was seen from the last frame: best the only one of its kind, and a good landmark.
+/// Chooses an object for the task that was seen from the last frame, preferably the only one of its kind and a good
+/// landmark.
 pub(in crate::writer) fn free_object(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Option<String> {
     let last = brief.walk.path.frames.len() - 1;
     let blamed = |name: &str| {
@@ -45,7 +45,7 @@ pub(in crate::writer) fn free_object(brief: &Brief<'_>, rng: &mut ChaCha8Rng) ->
     let scored = candidates.map(|seen| {
         let name = &seen.sighting.name;
         let (salience, class) = thing(name).map_or((0, Class::Unknown), |thing| (thing.salience, thing.class));
-        // One of several, or a part of the building, only where there is nothing else.
+        // One of several, or a part of the building, is chosen only if there is no other object.
         let poor =
             seen.sighting.several || matches!(class, Class::Structure | Class::Fabric | Class::Stairs | Class::Unknown);
         let score = f64::from(salience) + if alone(name) { 4.0 } else { 0.0 } - if poor { 20.0 } else { 0.0 };

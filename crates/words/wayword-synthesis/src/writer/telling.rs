@@ -1,4 +1,7 @@
-//! The clauses of a way in the words of its style.
+//! Writes a text that describes the way step by step.
+//!
+//! Several plans are made for the drawn length. The best is put into words, and phrases that copy a reference are
+//! replaced until none does or the attempts are used up.
 
 use super::{
     Brief,
@@ -16,23 +19,23 @@ use std::collections::BTreeSet;
 use wayword_checks::Matter;
 use wayword_language::text::word_count;
 
-/// A text may be longer or shorter than its style's by this, words.
+/// Tolerance around the drawn length while a plan is filled or cut, words.
 const SLACK: f64 = 2.0;
-/// A plan is near enough to its length within this, words.
+/// A plan that misses its length by at most this is as good as an exact one, words.
 const OFF: f64 = 5.0;
-/// And no longer than so many times its words where many things are seen.
+/// Greatest length of a plan with a thing in every place, as a multiple of the drawn length.
 const MOST: f64 = 1.1;
-/// So many plans are made, until one has its length and copies nothing from the style's references.
+/// Most plans that are tried until one has the right length and copies no reference.
 const PLANS: usize = 8;
-/// And words that are copied are replaced so often.
+/// Most replacements of copied phrases for each plan.
 const WORDINGS: usize = 24;
-/// What a copy counts against a text, what a run of words that it shares with a reference, and what it counts to be too long.
+/// Costs of a copied phrase, of a run of words shared with a reference, and of too many words.
 const COPIED: usize = 3;
 const SHARED: usize = 1;
 const OVER: usize = 10;
-/// No text is cut shorter than this, words.
+/// Least number of words of a text.
 const LEAST_WORDS: usize = 8;
-/// Clauses of less weight than this are left out of a text that is longer than its style's.
+/// Only clauses below this weight are dropped from a text that is too long.
 const OPTIONAL: u8 = 3;
 
 /// A text that describes the way step by step. `task` is what to do at the end, in words, with the name of its object.
@@ -65,25 +68,25 @@ pub(super) fn the_way(brief: &Brief<'_>, task: Option<&(String, String)>, dice: 
     best.map(|(_, text)| text).unwrap_or_default()
 }
 
-/// The plans of a text with what they draw, those first that come near to its length.
+/// Several plans of a text with their sources of random draws, those nearest to its length first.
 fn plans(brief: &Brief<'_>, words: f64, dice: Dice) -> Vec<(Plan, Dice)> {
     let numbered = (0..PLANS).map(|number| dice.other(number));
     let mut plans: Vec<(Plan, Dice)> = numbered.map(|dice| (Plan::of(brief, words, dice), dice)).collect();
-    // Where some are near enough, the first one stays.
+    // The sort is stable: of plans that are near enough, the first is taken.
     plans.sort_by_key(|(plan, _)| (plan.off - OFF).max(0.0).round() as u64);
     plans
 }
 
-/// What a text says, clause by clause. It goes by the way alone: things come in where the plan has a place for them.
+/// The plan of a text, clause by clause. It depends on the way alone; things are filled into its places later.
 struct Plan {
     clauses: Vec<Clause>,
     full_stop: bool,
-    /// How many words it is off its length, as far as is known without its things.
+    /// Difference from the drawn length, words, as far as it is known before things are filled in.
     off: f64,
 }
 
 impl Plan {
-    /// One of about so many words.
+    /// A plan of about this many words.
     fn of(brief: &Brief<'_>, words: f64, dice: Dice) -> Self {
         let mut clauses = route::clauses(brief, dice);
         if !stands_still(brief.walk) {
@@ -135,8 +138,8 @@ fn drop_least(clauses: &mut Vec<Clause>, below: u8) -> bool {
     true
 }
 
-/// Puts right what leaving out clauses may have broken: a room that is left was entered, and of two turns in a row the
-/// second has a place.
+/// Repairs a plan after clauses were dropped: a room that is left must have been entered, and of two consecutive turns
+/// the second needs a place.
 fn mend(clauses: &mut Vec<Clause>, brief: &Brief<'_>) {
     let start = brief.memory.room(0).and_then(usable_room);
     let mut known: BTreeSet<String> = start.into_iter().collect();
@@ -172,8 +175,8 @@ fn mend(clauses: &mut Vec<Clause>, brief: &Brief<'_>) {
     bridge(clauses, brief);
 }
 
-/// Where things may be told and there may be none, the text says that one goes on: between two turns in a row, and on a long way
-/// to the end of which nothing else is said.
+/// Lets a place for a thing fall back to "go straight": between two consecutive turns, and on a long last stretch that
+/// no other clause describes.
 fn bridge(clauses: &mut [Clause], brief: &Brief<'_>) {
     let told: Vec<usize> = (0..clauses.len()).filter(|at| !clauses[*at].is_offer()).collect();
     let befores = std::iter::once(None).chain(told.iter().map(|at| Some(*at)));
@@ -192,7 +195,7 @@ fn bridge(clauses: &mut [Clause], brief: &Brief<'_>) {
     }
 }
 
-/// A turn in the room in which it happens.
+/// Turns a plain turn into one that names its room.
 fn give_place(clause: &mut Clause, brief: &Brief<'_>) {
     let room = brief.memory.room(clause.at).and_then(usable_room);
     if clause.kind == Kind::Turn && room.is_some() {
@@ -200,7 +203,7 @@ fn give_place(clause: &mut Clause, brief: &Brief<'_>) {
     }
 }
 
-/// The task of a text that ends in one.
+/// Draws the task, if this text ends in one.
 pub(super) fn ending(brief: &Brief<'_>, rng: &mut ChaCha8Rng) -> Result<Option<(String, String)>, super::WriteError> {
     let ends = brief.style.constraints.ends_in_task || rng.random_bool(brief.profile.tasks.clamp(0.0, 1.0));
     if ends { task::task(brief, rng).map(Some) } else { Ok(None) }

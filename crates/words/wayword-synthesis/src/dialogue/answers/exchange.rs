@@ -1,4 +1,5 @@
-//! What one answer says to its question: which things are there, where, in which colour, and which are not.
+//! Interprets one answer in the light of its question: which things are there, where, in which colour, and which are
+//! not there.
 
 use super::{
     Told,
@@ -14,7 +15,7 @@ use wayword_language::{
     lexicon::{COUNTS, agree, is_thing, normal, singular, thing, without_article},
 };
 
-/// Everything that an exchange says of objects, as `by` says it.
+/// All sightings of an exchange, attributed to `by`.
 pub(super) fn said(exchange: &Exchange, by: &str) -> Vec<Told> {
     let mut said = of_answer(exchange);
     for told in &mut said {
@@ -39,7 +40,8 @@ fn of_answer(exchange: &Exchange) -> Vec<Told> {
     }
 }
 
-/// The things that an answer names. Walls, floors, ceilings and corners are everywhere, and do not count.
+/// The things that an answer names. Walls, floors, ceilings and corners are in every room, so they only count if they
+/// are in `known`.
 fn things(answer: &str, known: &BTreeSet<String>) -> Vec<Mention> {
     let everywhere =
         |name: &str| thing(name).is_some_and(|thing| matches!(thing.name, "wall" | "floor" | "ceiling" | "corner"));
@@ -55,12 +57,12 @@ fn told(mentions: Vec<Mention>, place: Option<Where>) -> Vec<Told> {
     mentions.into_iter().map(aside).collect()
 }
 
-/// A sighting of what the question asks for.
+/// A sighting of the thing that the question asks for.
 fn direct(sighting: Sighting) -> Told {
     Told { sighting, direct: true }
 }
 
-/// A sighting of something else.
+/// A sighting of some other thing that the answer mentions.
 fn aside(sighting: Sighting) -> Told {
     Told { sighting, direct: false }
 }
@@ -97,14 +99,14 @@ fn presence(wanted: &[Wanted], or: bool, answer: &str) -> Vec<Told> {
     found
 }
 
-/// What an answer says of one wanted thing; nothing where a yes or no to several leaves it open.
+/// The witness of an answer for one wanted thing; `None` where a yes or no to several things leaves it open.
 fn witness(own: &[Mention], polarity: Polarity, or: bool, of_several: bool) -> Option<Witness> {
     let says = |witness| own.iter().any(|mention| mention.witness == witness);
     match polarity {
         _ if says(Witness::Denied) => Some(Witness::Denied),
         Polarity::No if of_several && !or => says(Witness::Seen).then_some(Witness::Seen),
         Polarity::No => Some(Witness::Denied),
-        // "Yes, there might be one": what is said of the thing itself counts more.
+        // "Yes, there might be one": the wording about the thing itself counts more than the yes.
         Polarity::Yes if says(Witness::Unsure) && !says(Witness::Seen) => Some(Witness::Unsure),
         Polarity::Yes if !or => Some(Witness::Seen),
         Polarity::Unsure => Some(Witness::Unsure),
@@ -124,7 +126,7 @@ fn of_one(wanted: &Wanted, witness: Witness, own: &[Mention], place: Option<Wher
             ..sighting(&wanted.name, witness)
         },
         Witness::Denied => {
-            // "Is there a red chair?" "There is no chair." says more than a no.
+            // "Is there a red chair?" "There is no chair." denies every chair, not only a red one.
             let all = mention.is_some_and(|mention| normal(&mention.name) == normal(&wanted.name));
             let name = wanted.colour.as_ref().filter(|_| !all).map(|colour| format!("{colour} {}", wanted.name));
             Sighting { place: wanted.place, ..sighting(&name.unwrap_or(wanted.name.clone()), witness) }
@@ -193,11 +195,11 @@ fn place(wanted: &Wanted, answer: &str) -> Vec<Told> {
         _ => lower.clone(),
     };
     let told = presence(std::slice::from_ref(wanted), false, &bare);
-    // Without a place or a no the answer says nothing of the thing itself.
+    // Without a place or a no, the answer leaves open whether the thing is there.
     told.into_iter().filter(|told| !told.direct || told.sighting.witness != Witness::Unsure).collect()
 }
 
-/// What the answer to a question for the room names besides it.
+/// The things that the answer to a question for the room mentions besides the room.
 fn beside_the_room(answer: &str) -> Vec<Told> {
     let more = words(answer).len() > 4;
     let named = things(answer, &BTreeSet::new()).into_iter().filter(|mention| more && !mention.is_room);
@@ -207,8 +209,8 @@ fn beside_the_room(answer: &str) -> Vec<Told> {
 const PLACES: [(&str, Where); 3] =
     [(" on the left", Where::Left), (" in the middle", Where::Middle), (" on the right", Where::Right)];
 
-/// What an answer lists, where the whole of it is an enumeration: "There is a bed in the middle, two lamps on the left and a
-/// rug on the right." Names in it may be any words.
+/// The items of an answer that consists of an enumeration only, as rules and labels write it: "There is a bed in the
+/// middle, two lamps on the left and a rug on the right." The names may be any words. `None` for free text.
 pub(super) fn listed(answer: &str) -> Option<Vec<Sighting>> {
     let mut rest = ["There is ", "There are "].iter().find_map(|lead| answer.strip_prefix(lead))?;
     let mut found = Vec::new();
@@ -239,7 +241,7 @@ fn item(words: &str, place: Where) -> Option<Sighting> {
     Some(Sighting { place: Some(place), several, colour, ..sighting(name, Witness::Seen) })
 }
 
-/// The colour of a name and what it belongs to, where that is a thing: "tall grey armchair" is a grey armchair.
+/// Splits a name into its colour and the rest, if the rest is a thing: "tall grey armchair" is a grey armchair.
 fn apart(name: &str) -> (Option<String>, &str) {
     if is_thing(&normal(name)) {
         return (None, name);

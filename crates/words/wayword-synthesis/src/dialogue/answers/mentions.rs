@@ -1,4 +1,5 @@
-//! Free text: what it names, and what it says of that.
+//! Finds the things and rooms that a free text names, and for each whether it is affirmed or denied, its place and its
+//! colour.
 
 use super::{
     phrases::{PlacePhrase, colour_said_of, place_phrases},
@@ -19,7 +20,7 @@ use wayword_language::{
 /// Something that a text names.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::dialogue) struct Mention {
-    /// Its name, in the singular where it has one. What is denied keeps what sets it apart: "red chair".
+    /// Its name, in the singular if it has one. A denied thing keeps the words that distinguish it: "red chair".
     pub(in crate::dialogue) name: String,
     pub(in crate::dialogue) is_thing: bool,
     pub(in crate::dialogue) is_room: bool,
@@ -27,18 +28,18 @@ pub(in crate::dialogue) struct Mention {
     pub(in crate::dialogue) colour: Option<String>,
     pub(in crate::dialogue) place: Option<Where>,
     pub(in crate::dialogue) several: bool,
-    /// The word before it without articles and adjectives: "to", "of" ...
+    /// The word before it, articles and adjectives skipped: "to", "of" ...
     pub(in crate::dialogue) before: String,
-    /// Whether it is said to be seen through a door.
+    /// Whether the text places it behind a door or window.
     pub(in crate::dialogue) is_beyond: bool,
 }
 
 /// Longest name that counts as one, bytes.
 const MOST_NAME_BYTES: usize = 60;
-/// Longest text that is read, bytes; answers are shorter, and what comes after is left out.
+/// Longest text that is read, bytes. Answers are shorter; the rest of a longer one is ignored.
 const MOST_BYTES: usize = 16_384;
 
-/// Reads a text. `known` holds names, in normal spelling, that the lexicon may lack.
+/// Finds the mentions of a text. `known` contains names, in normal spelling, that the lexicon may lack.
 pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec<Mention> {
     let text = &text[..text.floor_char_boundary(MOST_BYTES)].replace('’', "'");
     let tokens = tokens(text);
@@ -55,7 +56,7 @@ pub(in crate::dialogue) fn mentions(text: &str, known: &BTreeSet<String>) -> Vec
     found
 }
 
-/// The sentences of a text as ranges of its tokens. A new line begins a new one.
+/// The sentences of a text as ranges of its tokens. A line break also ends one.
 fn sentences(text: &str, tokens: &[Token]) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = 0;
@@ -99,8 +100,8 @@ fn of_sentence(words: &[&str], start: usize, nouns: &[&Noun], found: &mut Vec<Me
     }
 }
 
-/// "A sofa or a bench": it is not known which, so both are unsure. "A sofa or couch" is one thing; its second name is
-/// returned.
+/// Handles "or". "A sofa or a bench" leaves open which it is, so both become unsure. "A sofa or couch" is one thing
+/// with two names; the second noun's index is returned, to be skipped.
 fn alternatives(words: &[&str], nouns: &[Range<usize>], witnesses: &mut [Witness]) -> Vec<usize> {
     let mut doubles = Vec::new();
     for at in 1..nouns.len() {
@@ -126,7 +127,7 @@ fn begins(word: &str) -> bool {
     TELLS_NOTHING.contains(&word) || BREAKERS.contains(&word) || PERCEIVING.contains(&word)
 }
 
-/// The words that say which of its kind is meant: colours, materials, uses.
+/// The words before a noun that distinguish it from others of its kind: colours, materials, uses.
 fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
     let from = (0..noun.start)
         .rev()
@@ -139,7 +140,7 @@ fn which<'a>(words: &[&'a str], noun: &Range<usize>) -> Vec<&'a str> {
     words[from..noun.start].iter().filter(|word| !TELLS_NOTHING.contains(word)).copied().collect()
 }
 
-/// "Through the doorway a bedroom", "a kitchen beyond the open door": what is named is behind it.
+/// Whether a noun lies behind an opening: "through the doorway a bedroom", "a kitchen beyond the open door".
 fn is_beyond(words: &[&str], noun: &Range<usize>) -> bool {
     let is_opening = |word: &str| {
         matches!(
@@ -155,7 +156,7 @@ fn is_beyond(words: &[&str], noun: &Range<usize>) -> bool {
     (noun.start.saturating_sub(8)..noun.start).chain(noun.end..noun.end + behind).any(through)
 }
 
-/// The last word before a noun that is neither an article nor an adjective of a few.
+/// The last word before a noun, articles and a few adjectives skipped.
 fn before<'a>(words: &[&'a str], noun: usize) -> &'a str {
     let skips =
         |word: &&&str| matches!(**word, "a" | "an" | "the" | "another" | "small" | "large" | "nearby" | "adjacent");
@@ -175,7 +176,8 @@ fn is_counted(words: &[&str], noun: usize) -> bool {
     false
 }
 
-/// The place of each noun of a sentence: said after it, or at the head of its part of the sentence.
+/// The place in the view of each noun of a sentence. A phrase of place belongs to the noun before it, or, at the head
+/// of its part of the sentence, to all nouns that follow.
 fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
     let mut places = vec![None; nouns.len()];
     let told = place_phrases(words);
@@ -200,8 +202,8 @@ fn places_of(words: &[&str], nouns: &[Range<usize>]) -> Vec<Option<Where>> {
     places
 }
 
-/// Whether a phrase of place comes before what it places: at the start, or after a comma or an "and", with a noun to
-/// come.
+/// Whether a phrase of place precedes the nouns that it places: at the start of the sentence, or after a comma or an
+/// "and", with a noun after it.
 fn is_head(words: &[&str], phrase: &PlacePhrase, nouns: &[Range<usize>]) -> bool {
     let before = phrase.from.checked_sub(1).map_or("", |at| words[at]);
     let begins = !nouns.iter().any(|noun| noun.end <= phrase.from) && !matches!(before, "it" | "one" | "them" | "they");
@@ -210,7 +212,7 @@ fn is_head(words: &[&str], phrase: &PlacePhrase, nouns: &[Range<usize>]) -> bool
     more && (joined || (begins && phrase.from <= 4))
 }
 
-/// A thing or a room among the words of a text.
+/// A thing or room, as a range of the tokens of a text.
 struct Noun {
     at: Range<usize>,
     is_thing: bool,
@@ -218,7 +220,8 @@ struct Noun {
     colour: Option<String>,
 }
 
-/// The things and rooms that a text names, in order. `known` holds names, in normal spelling, that the lexicon may lack.
+/// The things and rooms that a text names, in order. `known` contains names, in normal spelling, that the lexicon may
+/// lack.
 fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>) -> Vec<Noun> {
     let places = read(text, known).events.into_iter().filter_map(|event| match event.what {
         What::Place(place) => Some((event.span, place)),
@@ -245,7 +248,8 @@ fn nouns(text: &str, tokens: &[Token], words: &[&str], known: &BTreeSet<String>)
         .collect()
 }
 
-/// "The picture shows", "in this photo", "a picture of a kitchen": the view itself, not something on a wall of it.
+/// Whether a "picture" is the view itself and not an object on a wall: "the picture shows", "in this photo", "a picture
+/// of a kitchen".
 fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
     let single = to == from + 1 && matches!(words[from], "picture" | "photo" | "photograph");
     let filled = |word: &str| {
@@ -279,7 +283,7 @@ fn is_the_picture(words: &[&str], from: usize, to: usize) -> bool {
     single && !hangs && (matches!(before, "the" | "this") || of_all || shows)
 }
 
-/// "A painting of a horse": the horse is in the painting and not in the room.
+/// Whether a noun is the subject of a picture: "a painting of a horse" puts no horse into the room.
 fn is_depicted(words: &[&str], from: usize) -> bool {
     let picture = |word: &str| {
         matches!(
@@ -291,7 +295,8 @@ fn is_depicted(words: &[&str], from: usize) -> bool {
     near.is_some_and(|of| picture(words[of - 1]) && !is_the_picture(words, of - 1, of))
 }
 
-/// "A range of colours", "in shades of blue", "the light from the window", "tasteful decor".
+/// Whether a word that can name a thing is used in another sense: "a range of colours", "in shades of blue", "the light
+/// from the window", "tasteful decor".
 fn is_manner_of_speaking(words: &[&str], from: usize, to: usize) -> bool {
     if to != from + 1 {
         return false;
@@ -313,8 +318,8 @@ fn is_manner_of_speaking(words: &[&str], from: usize, to: usize) -> bool {
     }
 }
 
-/// A noun that the lexicon lacks counts where the text says that it is there or not, and where it is no word of
-/// describing.
+/// Whether a noun that the lexicon lacks counts as a thing: only if the text introduces it ("there is a gizmo") and it
+/// is no word of description.
 fn is_brought_in(words: &[&str], from: usize, to: usize) -> bool {
     let head = normal(words[to - 1]);
     let start = (0..from).rev().find(|at| matches!(words[*at], "." | "!" | "?" | ";")).map_or(0, |at| at + 1);

@@ -1,7 +1,8 @@
-//! What a dialogue says: its things, each once, and its room.
+//! Turns the transcript of a dialogue into sightings, one for each thing, and the name of the room.
 //!
-//! [`question`] reads what was asked for, [`exchange`] what one answer says to that. [`mentions`] reads free text,
-//! [`polarity`] what it affirms and denies, [`phrases`] its places, colours and names.
+//! [`question`] finds out what a question asks for, and [`exchange`] interprets one answer to it. Both build on
+//! [`mentions`] (the things named in free text), [`polarity`] (affirmed or denied) and [`phrases`] (places, colours,
+//! names).
 
 mod exchange;
 mod mentions;
@@ -27,17 +28,17 @@ pub(crate) use {
     question::{Asked, asked},
 };
 
-/// A sighting, and whether it answers a question about the thing itself.
+/// A sighting from one answer, and whether the question was about that very thing.
 pub(super) struct Told {
     pub(super) sighting: Sighting,
     pub(super) direct: bool,
 }
 
-/// Everything that a dialogue says of objects, each once, in the order in which it was said.
+/// All sightings of a dialogue, one for each thing, in the order in which the things were first mentioned.
 ///
-/// A denial outweighs whatever else is said of a thing, before or after it, because it is better to say too little to a
-/// robot than to send it to a hallucinated object. Between seen and not sure, the later answer to a question about the
-/// thing itself decides; doubt in passing changes nothing.
+/// A denial outweighs every other answer about a thing, earlier or later, because leaving out a real object harms a
+/// robot less than sending it to a hallucinated one. Between seen and not sure, the later answer to a direct question
+/// about the thing decides; doubt in passing changes no sighting.
 pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
     let mut joined: Vec<Sighting> = Vec::new();
     for exchange in transcript {
@@ -53,8 +54,8 @@ pub(crate) fn sightings(transcript: &[Exchange], by: &str) -> Vec<Sighting> {
     joined
 }
 
-/// Whether a denial applies to a thing: "no chair" denies a dining chair, but neither "no dining chair" nor "no red
-/// chair" denies a chair.
+/// Whether a denial covers a thing: "no chair" covers a dining chair, but "no dining chair" and "no red chair" do not
+/// cover a plain chair.
 pub(super) fn denies(denial: &Sighting, name: &str, colour: Option<&str>) -> bool {
     if denial.witness != Witness::Denied {
         return false;
@@ -64,7 +65,7 @@ pub(super) fn denies(denial: &Sighting, name: &str, colour: Option<&str>) -> boo
         return true;
     }
     let general = kinds(&denied);
-    // A name with more words than the lexicon's sets one of its kind apart from others.
+    // A name with more words than the lexicon's entry means a special kind of the thing.
     let is_one_of_many = !is_thing(&denied) && general[0] != denied;
     !is_one_of_many && kinds(&name).contains(&general[0])
 }
@@ -78,7 +79,7 @@ fn deny(joined: &mut Vec<Sighting>, denial: Sighting) {
     for before in joined.iter_mut() {
         let other = before.witness != Witness::Denied && !places_agree(before, &denial);
         if denies(&denial, &before.name, before.colour.as_deref()) {
-            // "No chair on the left" takes nothing from a chair on the right, and adds nothing.
+            // "No chair on the left" does not touch a chair on the right, and needs no entry of its own.
             known |= other || kinds(&before.name)[0] == kinds(&denial.name)[0] || before.name == denial.name;
             if !other {
                 before.witness = Witness::Denied;
@@ -125,7 +126,7 @@ fn add(joined: &mut Vec<Sighting>, earlier: usize, told: Told) {
 /// Longest name of a room, bytes.
 const MOST_BYTES: usize = 40;
 
-/// The room that was named: in answer to a question for it, else in the first description.
+/// The name of the room: from the answer to a question for it, or else from the first description.
 pub(crate) fn room(transcript: &[Exchange]) -> Option<String> {
     let asked_for = transcript.iter().find_map(|exchange| match asked(&exchange.question) {
         Asked::Room => answered(&exchange.answer),
@@ -140,7 +141,7 @@ pub(crate) fn room(transcript: &[Exchange]) -> Option<String> {
     asked_for.or_else(described)
 }
 
-/// "It is an office." gives any name; longer answers give the first room that the lexicon knows.
+/// "It is an office." names a room in any words; of a longer answer, the first room that the lexicon knows is taken.
 fn answered(answer: &str) -> Option<String> {
     let said = answer.trim().trim_end_matches('.').to_lowercase();
     let words = words(&said);
@@ -158,14 +159,14 @@ fn answered(answer: &str) -> Option<String> {
     first_named(answer, true).or_else(|| (short(bare) && words.len() <= 4).then(|| bare.to_owned()))
 }
 
-/// Whether words say more than a name.
+/// Whether a text is a sentence and not just a name.
 fn is_sentence(said: &str) -> bool {
     said.contains([',', '?', '!', ';', '\n'])
         || said.contains(". ")
         || words(said).iter().any(|word| TELLING.contains(&word.as_str()))
 }
 
-/// The first room that a text names as the one it is about. `ambiguous`: names that may be a thing's count too
+/// The first room that a text names as the one in view. `ambiguous`: whether names count that can also be a thing's
 /// ("stairs").
 fn first_named(text: &str, ambiguous: bool) -> Option<String> {
     const ELSEWHERE: [&str; 10] =

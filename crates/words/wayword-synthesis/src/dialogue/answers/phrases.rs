@@ -1,4 +1,5 @@
-//! Phrases within a question or an answer: where in the view, of which colour, and which thing is asked for.
+//! Recognises phrases within a question or an answer: places in the view, colours, and the names of things that a
+//! question asks for.
 
 use wayword_core::Where;
 use wayword_language::{
@@ -7,7 +8,7 @@ use wayword_language::{
     reading::vocabulary::{ABSTRACT, BREAKERS, COLOURS},
 };
 
-/// A phrase that says where in the view something is: its words, from and to, and the third.
+/// A phrase that places something in the view: the range of its words, and the third of the view that it means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PlacePhrase {
     pub(super) from: usize,
@@ -15,8 +16,8 @@ pub(super) struct PlacePhrase {
     pub(super) place: Where,
 }
 
-/// The place that a phrase beginning at a word names, and where it ends. `Some((None, _))` for a place in relation to
-/// something else.
+/// The place that the phrase beginning at a word means, and where the phrase ends. `Some((None, _))` for a place
+/// relative to another thing ("to the left of the sofa").
 fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
     let word = |at: usize| words.get(at).copied().unwrap_or("");
     match (word(from), word(from + 1), word(from + 2)) {
@@ -56,7 +57,7 @@ fn phrase_at(words: &[&str], from: usize) -> Option<(Option<Where>, usize)> {
     Some(if of_view { (Some(place), whole + 1) } else { (None, at + 1) })
 }
 
-/// The phrases of a run of words that place something in the view.
+/// The phrases of place among these words.
 pub(super) fn place_phrases(words: &[&str]) -> Vec<PlacePhrase> {
     let mut found = Vec::new();
     let mut at = 0;
@@ -86,7 +87,7 @@ pub(crate) fn colour_at(words: &[&str]) -> Option<(String, usize)> {
     }
 }
 
-/// The colour of a phrase that is nothing but a colour, without its shade.
+/// The colour of a phrase that consists of a colour only, without its shade ("light", "dark").
 pub(super) fn bare_colour(phrase: &str) -> Option<&str> {
     let words: Vec<&str> = phrase.split(' ').collect();
     colour_at(&words).filter(|(_, length)| *length == words.len()).and_then(|_| words.last().copied())
@@ -97,7 +98,8 @@ pub(super) fn first_colour(words: &[&str]) -> Option<String> {
     (0..words.len()).find_map(|at| colour_at(&words[at..])).map(|(colour, _)| colour)
 }
 
-/// The colour that a sentence gives to what it has just named: "is dark green", "appears to be mostly white".
+/// The colour that a sentence gives to the thing that it has just named: "is dark green", "appears to be mostly white".
+/// `after` has the words after the name.
 pub(super) fn colour_said_of(after: &[&str]) -> Option<String> {
     const LINKS: [&str; 9] = ["is", "are", "was", "were", "looks", "look", "appears", "appear", "painted"];
     const BETWEEN: [&str; 14] =
@@ -118,7 +120,7 @@ const MOST_THINGS: usize = 8;
 /// A thing that a question asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Wanted {
-    /// Its name as it is asked for, without article and adjectives of size.
+    /// Its name in the words of the question, without article and adjectives of size.
     pub(crate) said: String,
     /// The name without its colour, in the singular where it has one.
     pub(crate) name: String,
@@ -130,7 +132,7 @@ pub(crate) struct Wanted {
     pub(crate) place: Option<Where>,
 }
 
-/// The things that words ask for, with "or", "and" or commas between them, and whether it is an "or".
+/// The things that these words ask for, separated by "or", "and" or commas, and whether one of the joints is an "or".
 pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<Wanted>, bool)> {
     let place = place_phrases(words).first().map(|phrase| phrase.place);
     let mut found: Vec<Wanted> = Vec::new();
@@ -157,7 +159,7 @@ pub(super) fn all_wanted(words: &[&str]) -> Option<(Vec<Wanted>, bool)> {
     }
 }
 
-/// The words of a noun phrase from `at` on, and `at` moved behind it.
+/// The words of the noun phrase that begins at `at`; moves `at` behind it.
 pub(super) fn noun_phrase<'a>(words: &[&'a str], at: &mut usize) -> Option<Vec<&'a str>> {
     while words.get(*at).is_some_and(|word| FILLERS.contains(word)) {
         *at += 1;
@@ -191,7 +193,7 @@ pub(super) fn first_wanted(words: &[&str]) -> Option<Wanted> {
     wanted(&noun_phrase(words, &mut 0)?, None)
 }
 
-/// A name as a wanted thing; `None` where it names nothing in particular.
+/// Makes a wanted thing of a name; `None` for vague words such as "anything".
 pub(super) fn wanted(name: &[&str], place: Option<Where>) -> Option<Wanted> {
     let head = normal(name.last()?);
     let nothing = |word: &str| ANYTHING.contains(&word);
@@ -269,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_link_gives_a_colour_to_what_was_named() {
+    fn colour_said_of_needs_a_link_verb() {
         let said = |text: &str| colour_said_of(&text.split(' ').collect::<Vec<_>>());
         assert_eq!(said("is red"), Some("red".into()));
         assert_eq!(said("appears to be mostly light blue"), Some("light blue".into()));

@@ -1,7 +1,9 @@
-//! Yes, no and not sure: what an answer says as a whole, and how far a "no" or a "maybe" reaches in a sentence.
+//! Decides whether an answer as a whole means yes, no or not sure, and how far a "no" or a "maybe" reaches within a
+//! sentence.
 //!
-//! Triggers and the words that end their reach follow NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029), for the
-//! ways in which people and models describe pictures.
+//! The method is NegEx (Chapman et al. 2001, doi 10.1006/jbin.2001.1029): a trigger such as "no" or "without" denies
+//! the nouns after it up to a word that ends its reach. The word lists are for the ways in which people and models
+//! describe pictures.
 
 use std::ops::Range;
 use wayword_core::Witness;
@@ -13,18 +15,18 @@ use wayword_language::{
     text::words,
 };
 
-/// What an answer says to a question that wants a yes or a no.
+/// The meaning of an answer to a yes-or-no question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Polarity {
     Yes,
     No,
     Unsure,
-    /// It says neither; what it names decides.
+    /// Neither; the things that it names decide.
     Open,
 }
 
-/// What an answer says, by how it begins, or by the yes or no after its first comma ("Looking again, no."). Doubt in
-/// its first sentence outweighs that.
+/// The polarity of an answer, from how it begins, or from the yes or no after its first comma ("Looking again, no.").
+/// Doubt in the first sentence outweighs both.
 pub(super) fn polarity_of(answer: &str) -> Polarity {
     let answer = answer.replace('’', "'");
     let first = answer.split_inclusive(['.', '!', '?', '\n']).find(|part| part.contains(char::is_alphanumeric));
@@ -69,21 +71,22 @@ pub(super) fn is_unsure(words: &[&str]) -> bool {
     (0..words.len()).any(|at| doubt_at(&words[at..]).is_some())
 }
 
-/// A sentence: its words and marks in lower case, and where in it things and rooms are named, in order.
+/// A sentence: its words and punctuation marks in lower case, and the ranges of words that name things and rooms, in
+/// order.
 pub(super) struct Sentence<'a> {
     pub(super) words: &'a [&'a str],
     pub(super) nouns: &'a [Range<usize>],
 }
 
-/// What a trigger does to the nouns within its reach.
+/// How far a trigger reaches, and the witness that it gives to the nouns within.
 #[derive(Clone, Copy)]
 struct Reach {
     /// The word at which it begins.
     from: usize,
     says: Witness,
-    /// It reaches over "a lamp, a bed or a sofa": a verb was negated, and not the first noun alone.
+    /// Whether it covers a whole list ("a lamp, a bed or a sofa"), as a negated verb does, and not only the first noun.
     over_articles: bool,
-    /// It ends with the sentence or a "but" only.
+    /// Whether only the end of the sentence or a "but" ends it.
     to_the_end: bool,
 }
 
@@ -95,7 +98,7 @@ pub(super) fn doubt_at(words: &[&str]) -> Option<usize> {
 }
 
 impl Sentence<'_> {
-    /// What the sentence says of each noun.
+    /// The witness for each noun: seen, unless a trigger denies or doubts it.
     pub(super) fn witnesses(&self) -> Vec<Witness> {
         let mut said = vec![Witness::Seen; self.nouns.len()];
         for reach in (0..self.words.len()).filter_map(|at| self.trigger(at)) {
@@ -148,7 +151,7 @@ impl Sentence<'_> {
         }
     }
 
-    /// "maybe a lamp", "might be a lamp": the noun is not known to be there.
+    /// The reach of a word of doubt: "maybe a lamp", "might be a lamp".
     fn hedge(&self, at: usize) -> Option<Reach> {
         let is_hedge = match self.word(at) {
             "maybe" | "possibly" | "perhaps" | "potentially" | "presumably" | "probably" => true,
@@ -261,7 +264,7 @@ impl Sentence<'_> {
         }
     }
 
-    /// Whether nothing but commas, articles and "and" or "or" stands between a noun and the next.
+    /// Whether only commas, articles and "and" or "or" separate a noun from the next.
     fn is_joined(&self, noun: usize) -> bool {
         let between = &self.words[self.nouns[noun].end..self.nouns[noun + 1].start];
         between.iter().any(|word| matches!(*word, "and" | "or" | "nor"))

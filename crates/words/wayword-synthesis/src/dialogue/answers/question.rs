@@ -1,4 +1,5 @@
-//! What a question asks for.
+//! Finds out what a question asks for, so that its answer can be interpreted: whether a thing is there, its colour,
+//! number or place, or the room.
 
 use super::phrases::{Wanted, all_wanted, colour_at, first_colour, first_wanted, noun_phrase, place_phrases, wanted};
 use wayword_core::Where;
@@ -33,13 +34,13 @@ pub(crate) enum Asked {
     Room,
     /// Whether it is this room.
     IsRoom(String),
-    /// Anything else; where it asks about a part of the view, which.
+    /// Anything else, with the part of the view that it asks about, if any.
     Other(Option<Where>),
 }
 
 /// What a question asks for.
 pub(crate) fn asked(question: &str) -> Asked {
-    // "Look again and answer in one short sentence: ..." asks for what follows the colon.
+    // "Look again and answer in one short sentence: ...": only the words after the colon matter.
     let question = question.rsplit_once(": ").map_or(question, |(_, rest)| rest);
     let tokens = tokens(question);
     let words: Vec<&str> = tokens.iter().map(|token| token.word.as_str()).collect();
@@ -97,7 +98,7 @@ fn colour(question: &str, words: &[&str]) -> Option<Asked> {
     Some(Asked::Colour { name: wanted.name, guesses })
 }
 
-/// Whether the colour at a word describes what is before it, and not a noun after it.
+/// Whether the colour at a word describes the words before it, and not a noun after it.
 fn ends_phrase(words: &[&str], at: usize) -> bool {
     at > 1 && words.get(at + 1).is_none_or(|next| matches!(*next, "or" | "?" | "and" | "in" | ","))
 }
@@ -158,7 +159,7 @@ fn presence_of((wanted, or): (Vec<Wanted>, bool)) -> Asked {
     Asked::Presence { wanted, or }
 }
 
-/// What follows one of these verbs, where it comes early.
+/// The words after one of these verbs, if it comes early.
 fn after_verb<'a, 'b>(words: &'a [&'b str], verbs: &[&str]) -> Option<&'a [&'b str]> {
     let at = words.iter().take(5).position(|word| verbs.contains(word))?;
     Some(&words[at + 1..])
@@ -212,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn alternatives_are_kept_apart_from_pairs() {
+    fn read_question_distinguishes_alternatives_from_pairs() {
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
         assert_eq!(presence("Is there a bed or a sofa?"), Some((names(&["bed", "sofa"]), true)));
         assert_eq!(presence("Do you see a table and chairs?"), Some((names(&["table", "chair"]), false)));
@@ -220,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn questions_for_nothing_in_particular_ask_for_no_thing() {
+    fn vague_questions_ask_for_no_thing() {
         for question in [
             "Is there anything on the table?",
             "Are there any other objects?",
@@ -236,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_numbers_places_and_rooms_are_told_apart() {
+    fn read_question_distinguishes_colours_numbers_places_and_rooms() {
         let colour = |name: &str, guesses: &[&str]| Asked::Colour {
             name: name.into(),
             guesses: guesses.iter().map(|guess| (*guess).to_owned()).collect(),
@@ -257,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_colour_and_a_place_that_are_asked_for_are_kept() {
+    fn read_question_returns_the_colour_and_the_place() {
         let Asked::Presence { wanted, .. } = asked("Is there a red chair on the right?") else { panic!() };
         assert_eq!((wanted[0].said.as_str(), wanted[0].colour.as_deref()), ("red chair", Some("red")));
         assert_eq!(wanted[0].place, Some(Where::Right));

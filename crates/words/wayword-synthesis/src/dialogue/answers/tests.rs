@@ -1,4 +1,4 @@
-//! What models say about pictures, and what of it is kept.
+//! Answers of models about pictures, and the sightings that are read from them.
 
 use super::*;
 use crate::dialogue::OPENING;
@@ -38,7 +38,7 @@ fn check(question: &str, table: &[(&str, &str)]) {
 }
 
 #[test]
-fn no_is_kept_and_outweighs_what_was_said_before() {
+fn a_later_no_outweighs_an_earlier_sighting() {
     let told = read_all(&[
         (OPENING, "I can see a bed and a mirror."),
         ("Is there a mirror?", "No."),
@@ -181,7 +181,7 @@ fn not_every_no_is_a_denial() {
 }
 
 #[test]
-fn hedged_things_are_not_sure_and_appearances_are_seen() {
+fn hedged_things_are_unsure_and_appearances_are_seen() {
     check(
         OPENING,
         &[
@@ -249,7 +249,7 @@ fn yes_and_no_are_heard_in_all_their_forms() {
 }
 
 #[test]
-fn many_are_asked_for_in_many_ways() {
+fn answers_to_all_forms_of_questions_are_read() {
     for (question, answer, wanted) in [
         ("Are there any chairs in the room?", "Yes, there are two chairs on the left.", "+ chair left several"),
         ("Are there any chairs in the room?", "No.", "- chair"),
@@ -366,7 +366,7 @@ fn rooms_are_found_in_answers_to_the_question_for_them() {
 }
 
 #[test]
-fn without_a_question_the_first_description_tells_the_room() {
+fn room_comes_from_the_first_description_without_a_question() {
     for (answer, wanted) in [
         ("The picture shows a bedroom with a bed.", Some("bedroom")),
         ("The image depicts a spacious living room. A doorway leads to a kitchen.", Some("living room")),
@@ -413,7 +413,7 @@ proptest! {
 }
 
 #[test]
-fn ways_of_speaking_leave_no_ghosts() {
+fn figures_of_speech_name_no_things() {
     check(
         OPENING,
         &[

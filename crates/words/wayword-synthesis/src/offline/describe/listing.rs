@@ -1,4 +1,4 @@
-//! What is listed in a building, by object: where each stands, in which room, and from where it is seen.
+//! The objects of a building by their labels: where each one is, in which room, and from where it is seen.
 
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::{DMat3, DVec3, Frame, Heading, Label, ObjectId, Survey, ViewpointId};
@@ -31,7 +31,7 @@ pub(super) struct Object {
     pub(super) level: Option<u32>,
 }
 
-/// A viewpoint, with what is seen from it.
+/// A viewpoint with its room and the objects that are seen from it.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
     pub(super) eye: DVec3,
@@ -49,11 +49,11 @@ pub(super) struct Sight {
     pub(super) distance_m: Option<f64>,
 }
 
-/// Viewpoints of one name that hang together.
+/// Connected viewpoints with the same room name and storey.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Room {
     pub(super) name: Option<String>,
-    /// Names of the rooms beside it.
+    /// Names of the neighbouring rooms.
     pub(super) beside: BTreeSet<String>,
     /// The objects that are certainly in it.
     pub(super) things: Vec<usize>,
@@ -63,19 +63,19 @@ pub(super) struct Room {
 const ALSO_IN: f64 = 1.3;
 
 impl Object {
-    /// Whether somebody may call both by one name.
+    /// Whether both could be called by the same name.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         other.kinds.contains(&self.kinds[0]) || self.kinds.contains(&other.kinds[0])
     }
 
-    /// What it is called most precisely.
+    /// Its most specific kind.
     pub(super) fn kind(&self) -> &str {
         &self.kinds[0]
     }
 }
 
 impl Listing {
-    /// What a survey lists.
+    /// The listing of a whole building.
     #[must_use]
     pub fn of(survey: &Survey) -> Self {
         let mut listing = Self::default();
@@ -94,7 +94,7 @@ impl Listing {
         listing
     }
 
-    /// What is listed around one frame, where no more is known.
+    /// The listing of the objects around one frame, where no survey of the building exists.
     #[must_use]
     pub fn around<'a>(frame: &Frame, labels: impl Iterator<Item = &'a Label>) -> Self {
         let mut listing = Self { rooms: vec![Room::default()], ..Self::default() };
@@ -122,7 +122,8 @@ impl Listing {
 
     fn add_place<'a>(&mut self, eye: DVec3, room: usize, level: Option<u32>, labels: impl Iterator<Item = &'a Label>) {
         let mut sights: Vec<Sight> = Vec::new();
-        // Views come by heading, and nothing may depend on which side is first.
+        // Labels come in the order of the views' headings. Sorting by object makes the result independent of the first
+        // heading.
         let mut labels: Vec<&Label> = labels.collect();
         labels.sort_by(|a, b| a.object.cmp(&b.object));
         for label in labels {
@@ -155,7 +156,7 @@ impl Listing {
         self.objects.len() - 1
     }
 
-    /// Finds where objects without a position are, and in which room each is.
+    /// Estimates the position of objects that have none, and assigns objects to rooms.
     fn locate(&mut self) {
         let mut seen: Vec<Vec<(usize, Sight)>> = vec![Vec::new(); self.objects.len()];
         for (at, place) in self.places.iter().enumerate() {
@@ -182,7 +183,8 @@ impl Listing {
     }
 }
 
-/// The point that is nearest to all rays (origin and direction), where at least two cross clearly.
+/// The point nearest to all rays (origin and direction, least squares); `None` unless at least two rays cross at a
+/// clear angle.
 fn meeting(rays: &[(DVec3, DVec3)]) -> Option<DVec3> {
     let crosses = |a: &DVec3, b: &DVec3| a.cross(*b).length() > 0.25;
     rays.iter().find(|(_, way)| crosses(way, &rays[0].1))?;

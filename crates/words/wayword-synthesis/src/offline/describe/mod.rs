@@ -1,7 +1,8 @@
-//! Describes a target so that nothing else in its building fits: what is said beside its name and the kind of its room.
+//! Finds descriptions of a target that fit no other object of its building: properties that are added to its name and
+//! the kind of its room ("the lamp above the desk").
 //!
-//! All subsets of up to three properties are tried, after Dale and Reiter (1995): the shortest that leave no rival are
-//! kept, and, where none does, those that leave fewest.
+//! All subsets of up to three properties are tried, after Dale and Reiter (1995). The cheapest subsets that leave no
+//! rival are kept; if every subset leaves rivals, those that leave fewest.
 
 mod listing;
 mod properties;
@@ -15,19 +16,19 @@ pub use listing::Listing;
 use properties::{Property, Scene};
 use wayword_core::{Description, Distinction, Frame, Target};
 
-/// Most descriptions that are kept of a target.
+/// Most descriptions of a target.
 const MOST_KEPT: usize = 32;
-/// Most properties that are put together, the cheapest first.
+/// Most properties that are combined, the cheapest first.
 const MOST_PROPERTIES: usize = 36;
-/// What a superlative costs where there are more of its kind than one sees at the end.
+/// Extra cost of a superlative ("the leftmost") where more objects of the kind exist than can be seen from the end.
 const UNCLEAR: f64 = 1.2;
-/// What it costs to say a second thing of the object.
+/// Cost of a second property of the object.
 const SECOND: f64 = 1.0;
-/// What a property costs that is not needed to leave the target alone.
+/// Cost of a property that is not needed to single the target out.
 const IDLE: f64 = 1.0;
 
-/// Fills in how a target can be described: to somebody at the last frame, who sees its namesakes there, and to
-/// somebody who knows the building. Nothing is filled in where the target is not listed.
+/// Fills in how a target can be described: for a listener at the last frame, who sees other objects of the same name
+/// there, and for a listener who knows the whole building. Does nothing if the target is not listed.
 pub fn describe(target: &mut Target, last: &Frame, listing: &Listing) {
     let (Some(own), Some(place)) = (listing.object(&target.object), listing.place(last)) else { return };
     let place = &listing.places[place];
@@ -53,17 +54,17 @@ fn told_by(scene: &Scene<'_>, properties: &[Property], namesakes: &[bool]) -> Ve
     if namesakes.contains(&true) {
         told.extend(scene.superlatives(namesakes));
     }
-    // Who hears "on the right" looks for the only one there.
+    // A listener who hears "on the right" looks for the only one there.
     let is_clear = |told: &Distinction| !told.is_of_room() && !matches!(told, Distinction::OnSide { .. });
     if told.is_empty() {
-        // Nothing tells it from all of them: what tells it from most is better than nothing.
+        // No property excludes all namesakes: one that excludes most of them is better than none.
         let count = |fits: &[bool]| fits.iter().zip(namesakes).filter(|(fits, in_view)| **fits && **in_view).count();
         let all = namesakes.iter().filter(|in_view| **in_view).count();
         let of_object = properties.iter().filter(|property| is_clear(&property.told) && count(&property.fits) < all);
         told.extend(of_object.map(|property| (count(&property.fits) as f64, property.told.clone())));
     }
     if told.is_empty() {
-        // What is true of all of them still says where to look.
+        // A property that all of them share still narrows down where to look.
         let is_said = |told: &Distinction| is_clear(told) || !told.is_of_room() && scene.is_outermost();
         let of_object = properties.iter().filter(|property| is_said(&property.told));
         told.extend(of_object.map(|property| (property.cost, property.told.clone())));
@@ -99,7 +100,7 @@ fn search(scene: &Scene<'_>, properties: &[Property]) -> Vec<Description> {
             }
         }
     }
-    // Of several on a side, "the one on the left" is the leftmost.
+    // If several are on one side, "the one on the left" means the leftmost.
     if !scene.is_outermost() {
         let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
         found.retain(|found| found.description.leaves == 1 || !found.description.by.iter().any(is_side));
@@ -111,8 +112,8 @@ fn and(a: &[bool], b: &[bool]) -> Vec<bool> {
     a.iter().zip(b).map(|(a, b)| *a && *b).collect()
 }
 
-/// Adds the properties, alone and with what tells the target from the namesakes in view. Of things that nobody sees at
-/// the end, none is the leftmost, so those are left out then; that costs more, because it is less clear.
+/// Adds a candidate with these properties alone, and candidates with a superlative among the namesakes in view. The
+/// superlative ignores namesakes that cannot be seen from the end; that is less clear, so it costs more.
 fn add(scene: &Scene<'_>, by: &[&Property], left: &[bool], found: &mut Vec<Found>) {
     let count = |left: &[bool]| left.iter().filter(|left| **left).count();
     push(by, count(left), None, found);
@@ -128,12 +129,12 @@ fn add(scene: &Scene<'_>, by: &[&Property], left: &[bool], found: &mut Vec<Found
 
 fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, found: &mut Vec<Found>) {
     let cost = by.iter().map(|property| property.cost).sum::<f64>() + superlative.as_ref().map_or(0.0, |of| of.0);
-    // Two things to say of the object, and two of its room, are enough.
+    // Two properties of the object and two of its room are enough.
     let of_room = by.iter().filter(|property| property.told.is_of_room()).count();
     if of_room > 2 || by.len() + usize::from(superlative.is_some()) - of_room > 2 {
         return;
     }
-    // Nothing is said of one thing twice.
+    // No thing is mentioned twice in a description.
     let names = |at: usize| by[at].told.names();
     let repeats = (1..by.len()).any(|at| names(at).any(|name| (0..at).any(|before| names(before).any(|o| o == name))));
     if repeats {
@@ -142,7 +143,7 @@ fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, 
     let of_object = |told: &&&Property| !told.told.is_of_room() && !matches!(told.told, Distinction::Colour { .. });
     let more = by.iter().filter(of_object).count() + usize::from(superlative.is_some());
     let has_side = by.iter().any(|property| matches!(property.told, Distinction::OnSide { .. }));
-    // "The lamp by the sofa on the left": nobody knows what is on the left.
+    // "The lamp by the sofa on the left": it is unclear which of the two is on the left.
     if has_side && more > 1 {
         return;
     }
@@ -151,7 +152,7 @@ fn push(by: &[&Property], rest: usize, superlative: Option<(f64, Distinction)>, 
     found.push(Found { cost, description: Description { by: told.collect(), leaves: rest + 1 } });
 }
 
-/// The cheapest that pin the target; where none does, those that leave fewest.
+/// The cheapest descriptions that fit only the target; if there are none, those that fit the fewest objects.
 fn best(mut found: Vec<Found>) -> Vec<Description> {
     let least = found.iter().map(|found| found.description.leaves).min().unwrap_or(1);
     found.retain(|found| found.description.leaves == least);

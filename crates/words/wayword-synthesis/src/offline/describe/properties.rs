@@ -1,22 +1,22 @@
-//! What is true of an object, and which of its rivals it is true of too. Where that is not clear, a rival counts as
-//! fitting, so that a description never leaves fewer objects than it should.
+//! Properties of the target (room, colour, side, relations), each with the rivals that share it. In doubt a rival
+//! counts as sharing a property, so a description never seems to fit fewer objects than it does.
 
 use super::listing::{Listing, Object, Place, Sight};
 use std::collections::BTreeSet;
 use wayword_core::{DVec3, Distinction, Frame, Heading, Side};
 use wayword_language::lexicon::{Class, room_name, same_room};
 
-/// Something that is true of the target.
+/// A property that the target has.
 #[derive(Debug, Clone)]
 pub(super) struct Property {
     pub(super) told: Distinction,
     /// For each rival, whether it fits too.
     pub(super) fits: Vec<bool>,
-    /// How much it costs to say, about its words.
+    /// The cost of mentioning it, roughly its words.
     pub(super) cost: f64,
 }
 
-/// A target, and all that may be called by its name.
+/// The target, the viewpoint at the end, and the rivals: all objects that could be called by the target's name.
 pub(super) struct Scene<'a> {
     pub(super) listing: &'a Listing,
     pub(super) place: &'a Place,
@@ -25,9 +25,9 @@ pub(super) struct Scene<'a> {
     pub(super) rivals: Vec<usize>,
 }
 
-/// What is in the same room may be seen from this far, metres.
+/// Greatest distance at which an object in the same room counts as visible, metres.
 const IN_SIGHT_M: f64 = 8.0;
-/// What hangs is not lower than this below the eye, metres.
+/// A hanging thing is at most this far below the eye, metres.
 const HIGH_M: f64 = 0.4;
 
 impl<'a> Scene<'a> {
@@ -75,7 +75,7 @@ impl<'a> Scene<'a> {
         Property { told, cost, fits: self.rivals.iter().map(|rival| fits(*rival)).collect() }
     }
 
-    /// All properties of the target that do not depend on what else is said.
+    /// All properties of the target that do not depend on the rest of the description; superlatives do.
     pub(super) fn properties(&self) -> Vec<Property> {
         let mut all = self.of_room();
         let own = self.object(self.target);
@@ -93,8 +93,8 @@ impl<'a> Scene<'a> {
         all
     }
 
-    /// Whether the target certainly hangs on a wall: a picture or a mirror, high enough, with nothing right below that could
-    /// carry it.
+    /// Whether the target certainly hangs on a wall: a picture or a mirror, high enough, with no object right below
+    /// that could carry it.
     pub(super) fn hangs(&self) -> bool {
         let own = self.object(self.target);
         let Some(here) = own.position else { return false };
@@ -155,7 +155,7 @@ impl<'a> Scene<'a> {
             deg if (25.0..155.0).contains(&-deg) => (Side::Left, -1.0),
             _ => return None,
         };
-        // Who says "on the left" means what one sees on arrival.
+        // "On the left" describes the view on arrival.
         let may_be = |rival: usize| self.bearing_deg(rival).is_some_and(|deg| (5.0..175.0).contains(&(deg * sign)));
         Some(self.property(Distinction::OnSide { side }, 3.4, may_be))
     }
@@ -167,8 +167,8 @@ impl<'a> Scene<'a> {
         others.map(|deg| deg * own.signum()).all(|deg| deg <= own.abs() + 1.0)
     }
 
-    /// Where an object is from the heading of arrival, degrees, positive right. Labels may leave out what is farther off
-    /// in the same room or in one of its name.
+    /// The direction of an object from the heading of arrival, degrees, positive right. Labels may omit distant objects
+    /// of the same room or of one with its name, so their position is used where it is known.
     fn bearing_deg(&self, at: usize) -> Option<f64> {
         let here = || {
             let (object, name) = (self.object(at), self.listing.rooms[self.place.room].name.as_ref());
@@ -182,7 +182,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Whether nobody could find an object by this thing: parts of the building, and names that the lexicon does not have.
+/// Whether an object is too vague to find another one by: parts of the building, and names that the lexicon lacks.
 pub(super) fn is_unclear(thing: &Object) -> bool {
     matches!(thing.class, Class::Fabric | Class::Unknown | Class::Structure)
         && !matches!(thing.kind(), "window" | "fireplace" | "column" | "railing")

@@ -1,4 +1,7 @@
-//! How the target stands to the things beside it.
+//! Spatial relations between the target and things near it: near, above, left of, between.
+//!
+//! A relation has to hold clearly for the target, but it excludes a rival only if it clearly does not hold for the
+//! rival.
 
 use super::{
     listing::Object,
@@ -9,21 +12,21 @@ use wayword_language::lexicon::Class;
 
 /// Two things are near each other within this distance, metres.
 const NEAR_M: f64 = 1.5;
-/// Farther apart than this they are certainly not, metres.
+/// Two things farther apart than this are certainly not near each other, metres.
 const NOT_NEAR_M: f64 = 1.8;
 /// The target has to be nearer than this share of the distance of every rival.
 const CLEARLY: f64 = 0.7;
-/// And nearer by this, metres.
+/// The target also has to be nearer by this, metres.
 const CLEARLY_M: f64 = 0.3;
-/// What it costs to name a small thing beside the target.
+/// Extra cost of a relation to a small thing.
 const SMALL: f64 = 0.9;
-/// Distances that are equal by this are the same: a tenth of a millimetre, per metre.
+/// Distances are compared after rounding to this many units per metre, a tenth of a millimetre each.
 const PER_M: f64 = 10_000.0;
-/// Most neighbours of the target that are looked at, the nearest first.
+/// Most neighbours of the target that are considered, the nearest first.
 const MOST_NEIGHBOURS: usize = 8;
 
 impl<'a> Scene<'a> {
-    /// The things beside the target that a walker at the end sees too, the nearest first.
+    /// The things near the target that a walker at the end can see too, the nearest first.
     fn neighbours(&self) -> Vec<(usize, f64)> {
         let own = self.object(self.target);
         let seen = self.place.sights.iter().map(|sight| sight.object);
@@ -34,7 +37,7 @@ impl<'a> Scene<'a> {
         let mut near: Vec<(usize, f64)> =
             seen.filter(tells).filter_map(|at| Some((at, apart(own, self.object(at))?))).collect();
         near.retain(|(_, apart_m)| *apart_m <= NEAR_M);
-        // Of two that are as near, the order of ids decides, whatever the last bits of their places.
+        // At equal distance the order of ids decides, not rounding errors of the positions.
         near.sort_by_key(|(_, apart_m)| (apart_m * PER_M).round() as i64);
         near.truncate(MOST_NEIGHBOURS);
         near
@@ -73,7 +76,7 @@ impl<'a> Scene<'a> {
         let mut all = vec![self.property(related(Relation::Near), 1.6, |rival| nearest(rival) <= NOT_NEAR_M)];
         let is_alone =
             alike.iter().filter(|other| apart(own, other).is_none_or(|m| m <= 2.0 * NOT_NEAR_M)).count() == 1;
-        // No rival may be nearer to it, wherever that one is.
+        // No rival may be nearer to it, wherever the rival is.
         let is_nearest =
             self.rivals.iter().all(|rival| apart(self.object(*rival), to).is_none_or(|m| m > 1.05 * apart_m));
         if is_alone && is_nearest {
@@ -95,7 +98,7 @@ impl<'a> Scene<'a> {
             }
         }
         all.extend(self.beside(at, &alike));
-        // A plate is hard to find itself.
+        // A small thing such as a plate is hard to find itself.
         if to.salience < 2 {
             all.iter_mut().for_each(|property| property.cost += SMALL);
         }
@@ -149,7 +152,7 @@ fn apart(a: &Object, b: &Object) -> Option<f64> {
     Some(a.position?.distance(b.position?))
 }
 
-/// Whether a relation has to hold clearly, or may just hold.
+/// Whether a relation has to hold clearly (for the target) or may just hold (for a rival).
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Strict {
     Yes,
@@ -181,7 +184,7 @@ fn holds(relation: Relation, a: &Object, b: &Object, strict: Strict) -> bool {
     }
 }
 
-/// Whether a thing stands between two others, seen from above, at an angle of at least that many degrees.
+/// Whether a thing lies between two others, seen from above: the directions to them differ by at least `degrees`.
 fn is_between(thing: &Object, one: &Object, other: &Object, degrees: f64) -> Option<bool> {
     let (here, one, other) = (thing.position?, one.position?, other.position?);
     let limit_m = if degrees > 120.0 { NEAR_M } else { NOT_NEAR_M };

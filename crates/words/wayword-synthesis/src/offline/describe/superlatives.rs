@@ -1,17 +1,17 @@
-//! What the target is among its namesakes in view: the leftmost, the nearest, the highest.
+//! Superlatives of the target among the objects of its name in view: the leftmost, the nearest, the highest.
 
 use super::properties::Scene;
 use wayword_core::{Distinction, Side};
 
 /// Least angle between the target and the next in a row, degrees.
 const APART_DEG: f64 = 5.0;
-/// The widest row, degrees: of things all around, none is the leftmost.
+/// The widest row, degrees. If things lie all around the walker, none of them is the leftmost.
 const WIDEST_DEG: f64 = 150.0;
 /// The nearest has to be nearer than this share of the distance of the next.
 const CLEARLY: f64 = 0.75;
 /// The highest has to be higher than the next by this, metres.
 const HIGHER_M: f64 = 0.3;
-/// The longest row in which people count.
+/// The longest row in which people count ("the third from the left").
 const LONGEST_ROW: usize = 5;
 
 impl Scene<'_> {
@@ -28,7 +28,7 @@ impl Scene<'_> {
         let turns = turns?;
         let all = || turns.iter().copied().chain([own]);
         let (first, last) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-        // A row behind the walker's back has no left end that everybody agrees on.
+        // A row behind the walker's back has no clear left end.
         let is_clear = last - first <= WIDEST_DEG && first > -165.0 && last < 165.0;
         if !is_clear || turns.iter().any(|turn| (turn - own).abs() < APART_DEG) {
             return None;

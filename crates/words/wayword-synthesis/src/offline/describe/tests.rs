@@ -71,7 +71,7 @@ fn the_only_one_needs_no_more_than_its_name() {
 }
 
 #[test]
-fn a_neighbour_tells_one_of_two_and_a_row_does() {
+fn a_neighbour_or_a_row_distinguishes_one_of_two() {
     let sofa = ("3", "sofa", LEFT + DVec3::new(0.0, 0.6, 0.0));
     let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), sofa];
     let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
@@ -83,7 +83,7 @@ fn a_neighbour_tells_one_of_two_and_a_row_does() {
 }
 
 #[test]
-fn what_hardly_holds_is_not_said() {
+fn describe_leaves_out_unclear_properties() {
     // Both lamps are about as near to the sofa, and about as far to the left.
     let things = [("1", "lamp", LEFT), ("2", "lamp", LEFT + DVec3::new(0.1, 0.0, 0.0)), ("3", "sofa", RIGHT)];
     let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);
@@ -99,7 +99,7 @@ fn names_that_mean_the_same_are_rivals() {
 }
 
 #[test]
-fn the_room_is_told_by_what_lies_beside_it() {
+fn the_room_is_identified_by_its_neighbours() {
     let other = [("2", "lamp", FAR + DVec3::X)];
     let spots: [Spot<'_>; 3] = [
         ("a", EYE, "bedroom", &[("1", "lamp", LEFT)]),
@@ -127,7 +127,7 @@ fn the_one_on_the_left_is_the_outermost_of_several() {
     let says_side = |target: &str| {
         let pillows = [("1", "pillow", near), ("2", "pillow", far)];
         let other = [("3", "pillow", FAR + DVec3::X)];
-        // Beds are told apart by nothing else: the other bedroom is the same.
+        // No other property differs between the beds: the other bedroom is the same.
         let spots: [Spot<'_>; 2] = [("a", EYE, "bedroom", &pillows), ("b", FAR, "bedroom", &other)];
         let pillow = described(target, &spots, &[], true);
         let is_side = |by: &Distinction| matches!(by, Distinction::OnSide { .. });
@@ -138,7 +138,7 @@ fn the_one_on_the_left_is_the_outermost_of_several() {
 }
 
 #[test]
-fn what_labels_leave_out_at_the_end_is_still_on_a_side() {
+fn unlisted_rivals_at_the_end_count_for_sides() {
     // The second chair is in the room, but only listed where the first is not seen.
     let (one, other) = (DVec3::new(-2.0, 1.0, 1.0), DVec3::new(-4.0, 1.0, 1.0));
     let (here, there) = ([("1", "chair", one)], [("2", "chair", other)]);
@@ -149,7 +149,7 @@ fn what_labels_leave_out_at_the_end_is_still_on_a_side() {
 }
 
 #[test]
-fn nothing_is_said_of_one_thing_twice() {
+fn describe_mentions_no_thing_twice() {
     let shelf = ("3", "shelf", LEFT + DVec3::Z * 0.6);
     let things = [("1", "lamp", LEFT), ("2", "lamp", RIGHT), shelf];
     let lamp = described("1", &[("a", EYE, "bedroom", &things)], &[], true);

@@ -1,4 +1,4 @@
-//! The kinds of clauses by which a way is told.
+//! The kinds of clauses that describe a way, and how a clause of a reference text is assigned to one.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -8,7 +8,7 @@ use wayword_language::{
     reading::{Event, Going, Link, Place, What},
 };
 
-/// What a clause of the way says. In its shape `{s}` is a side, `{l}` a thing, `{r}` a room, `{a}` a room that one leaves,
+/// The content of a clause. In its shape, `{s}` is a side, `{l}` a thing, `{r}` a room, `{a}` the room that one leaves,
 /// and `{p}` the side on which a thing is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -57,13 +57,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Whether it is a turn of which nothing else is said.
+    /// Whether it is a turn without any other detail.
     #[must_use]
     pub fn is_bare_turn(self) -> bool {
         matches!(self, Self::Turn | Self::TurnSlightly | Self::TurnAround)
     }
 
-    /// Whether its words name the room to which it leads, or in which one is.
+    /// Whether its words name the room that it leads to or takes place in.
     #[must_use]
     pub fn names_room(self) -> bool {
         !matches!(
@@ -79,14 +79,14 @@ impl Kind {
         )
     }
 
-    /// Whether it may be followed by how far one goes.
+    /// Whether a limit may follow it, as in "walk straight until you reach the sofa".
     #[must_use]
     pub fn goes_on(self) -> bool {
         matches!(self, Self::Straight | Self::Along | Self::Pass | Self::PassOnSide)
     }
 }
 
-/// What one goes through between rooms, by whatever name.
+/// The names of openings between rooms.
 const DOORS: &[&str] = &["door", "doorway", "opening", "entrance", "exit"];
 
 /// A clause taken apart.
@@ -103,7 +103,7 @@ pub(super) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// The events of a clause; `None` where it says something that no kind of clause says.
+    /// The parts of a clause from its events; `None` if it has a part that fits no kind.
     pub(super) fn of(events: &[&'a Event]) -> Option<Self> {
         let mut parts = Self {
             turns: Vec::new(),
@@ -137,7 +137,7 @@ impl<'a> Parts<'a> {
             _ if !is_plain => return None,
             _ if is_stairs => self.stairs = true,
             _ if DOORS.contains(&place.name.as_str()) => self.doors.push(place),
-            // Walls and floors are everywhere, and no evidence lists them.
+            // Walls and floors are in every room, and evidence does not list them.
             Some(Class::Fabric | Class::Unknown | Class::Door) => return None,
             _ if place.several => return None,
             _ if place.is_room => self.rooms.push((place, span)),

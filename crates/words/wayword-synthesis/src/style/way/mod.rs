@@ -1,5 +1,7 @@
-//! How the texts of a style tell a way: the shapes of their clauses, what joins these, and the names that they give to
-//! rooms and things, each with how many texts have it.
+//! How the texts of a style describe a way: the shapes of their clauses, the joints between clauses, and the names of
+//! rooms and things, each with its number of texts.
+//!
+//! A shape is a clause with slots for its names: "turn {s} at the {l}".
 
 mod kind;
 mod shapes;
@@ -19,7 +21,7 @@ use wayword_language::{
     reading::{Reading, What},
 };
 
-/// How the texts of a style tell a way.
+/// How the texts of a style describe a way.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Way {
@@ -29,9 +31,9 @@ pub struct Way {
     pub kinds: BTreeMap<Kind, f64>,
     /// What joins a clause to the one before it.
     pub joints: BTreeMap<Joint, f64>,
-    /// The same behind a turn of which nothing else is said.
+    /// The same after a turn without any other detail.
     pub turn_joints: BTreeMap<Joint, f64>,
-    /// The same for the clause that tells to stop.
+    /// The same before the clause to stop.
     pub stop_joints: BTreeMap<Joint, f64>,
     /// The names of each room, by its usual name.
     pub rooms: BTreeMap<String, BTreeMap<String, f64>>,
@@ -39,7 +41,7 @@ pub struct Way {
     pub things: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
-/// Our own constructions, with shares that were measured on R2R's training split.
+/// The built-in constructions, with shares that were measured on R2R's training split.
 #[derive(Default, Deserialize)]
 struct BuiltIn {
     /// The words of which shapes may consist.
@@ -53,15 +55,15 @@ static BUILT_IN: LazyLock<BuiltIn> =
 
 static ALLOWED: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| BUILT_IN.words.split_whitespace().collect());
 
-/// A shape is a formula where so many texts have it.
+/// A shape is used if at least this many texts have it.
 const FEWEST_TEXTS: f64 = 3.0;
-/// So many clauses tell more than our own.
+/// With this many clauses, the measured shares are preferred to the built-in ones.
 const ENOUGH: f64 = 40.0;
-/// A name belongs to a room or thing where it has at least this share of its mentions.
+/// A name belongs to a room or thing if it has at least this share of its mentions.
 const LEAST_SHARE: f64 = 0.04;
 
 impl Way {
-    /// Measures texts that were read. Where a text's clauses show too little, the built-in constructions fill in.
+    /// Measures texts with their readings. Where their clauses show too little, the built-in constructions fill in.
     #[must_use]
     pub fn measure<'a>(texts: impl IntoIterator<Item = (&'a str, &'a Reading)>) -> Self {
         let mut way = Self::default();
@@ -109,7 +111,8 @@ impl Way {
         }
     }
 
-    /// Keeps what several texts say, and what is read again as what it was.
+    /// Keeps the shapes that several texts have and that our reader understands as the same kind and shape; likewise
+    /// the names.
     fn settle(&mut self) {
         for (kind, shapes) in &mut self.shapes {
             shapes.retain(|shape, texts| *texts >= FEWEST_TEXTS && shapes::reads_the_same(*kind, shape, &ALLOWED));
@@ -126,7 +129,7 @@ impl Way {
         self.things.retain(|_, names| !names.is_empty());
     }
 
-    /// Our own constructions and names, where these texts show too few.
+    /// Fills in the built-in constructions and names where these texts show too few.
     fn complete(&mut self) {
         let own = &BUILT_IN.way;
         if self.kinds.values().sum::<f64>() < ENOUGH * ENOUGH {
@@ -137,7 +140,7 @@ impl Way {
             if told.values().sum::<f64>() < ENOUGH {
                 *told = shapes.clone();
             }
-            // This is read as one with the clause before it, so that no clause of the texts shows it.
+            // An "until" clause is read together with the clause before it, so no measured clause shows it.
             let until = shapes.iter().filter(|(shape, _)| is_until(shape));
             told.extend(until.map(|(shape, texts)| (shape.clone(), *texts)));
         }
@@ -158,7 +161,7 @@ impl Way {
         }
     }
 
-    /// Our own constructions.
+    /// The built-in constructions.
     #[must_use]
     pub fn built_in() -> &'static Self {
         &BUILT_IN.way

@@ -1,4 +1,4 @@
-//! Clauses of reference texts as shapes with slots.
+//! Turns the clauses of reference texts into shapes with slots, so that the writer can fill them with other names.
 
 use super::kind::{Kind, Parts};
 use std::collections::BTreeSet;
@@ -11,18 +11,18 @@ use wayword_language::{
 /// Most words of a shape.
 const MOST_WORDS: usize = 13;
 
-/// A clause of a text: what joins it to the clause before, and its shape where it has one.
+/// A clause of a text, with its joint to the clause before and, if it has one, its shape.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Told {
     pub(super) joint: Joint,
-    /// Its kind, where it is of one.
+    /// Its kind, if it has one.
     pub(super) kind: Option<Kind>,
     pub(super) shape: Option<(Kind, String)>,
-    /// Whether it tells to stop.
+    /// Whether it is an order to stop.
     pub(super) stops: bool,
 }
 
-/// What stands between two clauses.
+/// The words and marks between two clauses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[allow(missing_docs)] // The names explain themselves.
@@ -41,7 +41,7 @@ pub enum Joint {
 }
 
 impl Joint {
-    /// The words of the joint, and whether a new sentence begins.
+    /// The words and marks of the joint.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -65,10 +65,10 @@ impl Joint {
     }
 }
 
-/// Words that join clauses and are no part of a shape.
+/// Words that join clauses and do not belong to a shape.
 const LINKS: &[&str] = &["and", "then", "next", "now"];
 
-/// The clauses of a text. `allowed` are the words of which a shape may consist.
+/// The clauses of a text. A shape may consist only of `allowed` words.
 pub(super) fn told(text: &str, reading: &Reading, allowed: &BTreeSet<&str>) -> Vec<Told> {
     let tokens = text::tokens(text);
     let (mut clauses, mut end, mut pending) = (Vec::new(), 0, Vec::<&str>::new());
@@ -115,12 +115,12 @@ fn joint(between: &[&str]) -> Joint {
         (false, true, false, true) => Joint::CommaThen,
         (false, false, true, true) => Joint::AndThen,
         (false, false, false, true) => Joint::Then,
-        // Without a word between them one clause runs into the next.
+        // Two clauses without any word between them count as joined by "and".
         (false, false, _, false) => Joint::And,
     }
 }
 
-/// The kind of a clause, and its shape where it consists of allowed words.
+/// The kind of a clause, and its shape if it consists of allowed words.
 fn shape(words: &[&Token], events: &[&Event], allowed: &BTreeSet<&str>) -> (Option<Kind>, Option<(Kind, String)>) {
     let all: BTreeSet<&str> = words.iter().map(|token| token.word.as_str()).collect();
     let Some(parts) = Parts::of(events) else { return (None, None) };
@@ -171,7 +171,7 @@ fn is_whole(kind: Kind, shape: &str) -> bool {
         | Kind::TurnAtBottom => (s, l, r, a, p) == (1, 0, 0, 0, 0),
         Kind::TurnAt => (s, l, r, a, p) == (1, 1, 0, 0, 0),
         Kind::TurnIn | Kind::TurnInto | Kind::TurnOut | Kind::TurnAtEnd => (s, l, r, a, p) == (1, 0, 1, 0, 0),
-        // "The room" stands for its name.
+        // "The room" can replace its name.
         Kind::Enter | Kind::Leave | Kind::Through | Kind::StopIn => (s, l, a, p) == (0, 0, 0, 0) && r <= 1,
         Kind::LeaveByDoor | Kind::EnterThroughDoor | Kind::StopInDoorwayOf | Kind::Along | Kind::AlongToEnd => {
             (s, l, r, a, p) == (0, 0, 1, 0, 0)
@@ -189,20 +189,20 @@ fn is_whole(kind: Kind, shape: &str) -> bool {
     fits && may_run && is_english(shape)
 }
 
-/// Words with which no clause ends.
+/// Words that cannot end a clause.
 const DANGLING: &[&str] = &["the", "a", "an", "of", "to", "your", "on", "in", "at"];
-/// Words with which no clause of its own begins.
+/// Words that cannot begin a clause of its own.
 const FRAGMENTS: &[&str] =
     &["down", "past", "into", "through", "once", "when", "out", "{s}", "up", "across", "along", "the", "on", "off"];
 
-/// Whether a shape says how far one goes on: it follows a clause that does not say it.
+/// Whether a shape limits the clause before it, as in "until you reach the sofa".
 #[must_use]
 pub fn is_until(shape: &str) -> bool {
     shape.starts_with("until ")
 }
 
-/// Whether a shape is a clause of its own, with an article before each name, and says no more than its kind: "next"
-/// and "front" only stand in "next to" and "in front of", and nothing is in a thing.
+/// Whether a shape is a correct clause of its own: it has an article before each name and adds no detail to its kind.
+/// "Next" and "front" are only allowed in "next to" and "in front of", and a thing cannot be entered.
 fn is_english(shape: &str) -> bool {
     let words: Vec<&str> = shape.split(' ').collect();
     let before = |at: usize| at.checked_sub(1).map_or("", |at| words[at]);
@@ -226,8 +226,7 @@ fn is_english(shape: &str) -> bool {
     is_whole && words.iter().enumerate().all(fits)
 }
 
-/// Whether a shape, filled with names that it never saw, is read as what it was: all of it is understood, and it is of
-/// the same kind and shape.
+/// Whether a shape, filled with new names, is read as a clause of the same kind and shape, and understood completely.
 pub(super) fn reads_the_same(kind: Kind, shape: &str, allowed: &BTreeSet<&str>) -> bool {
     let room = if matches!(kind, Kind::Along | Kind::AlongToEnd | Kind::TurnAtEnd) { "hallway" } else { "bedroom" };
     [("left", "sofa"), ("right", "desk")].iter().all(|(side, thing)| {

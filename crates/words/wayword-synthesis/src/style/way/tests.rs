@@ -12,7 +12,7 @@ fn measured(texts: &[&str]) -> Way {
 }
 
 #[test]
-fn a_shape_is_what_several_texts_say_with_their_names_left_out() {
+fn a_shape_is_a_clause_of_several_texts_without_names() {
     let way = measured(&[
         "Walk past the piano and turn left at the desk. Stop by the sofa.",
         "Walk past the globe, then turn right at the lamp. Wait in the attic.",
@@ -27,7 +27,7 @@ fn a_shape_is_what_several_texts_say_with_their_names_left_out() {
 }
 
 #[test]
-fn what_says_more_than_its_kind_is_no_shape() {
+fn a_clause_with_extra_detail_is_no_shape() {
     for text in [
         "Walk past the second piano.",
         "Walk past the green piano.",
@@ -45,7 +45,7 @@ fn what_says_more_than_its_kind_is_no_shape() {
 }
 
 #[test]
-fn names_are_counted_by_what_they_mean() {
+fn names_are_counted_by_their_usual_name() {
     let way = measured(&["Cross the hall. Stop by the couch."; 3]);
     assert_eq!(way.rooms["hallway"]["hall"], 3.0);
     assert_eq!(way.things["sofa"]["couch"], 3.0);
@@ -53,7 +53,7 @@ fn names_are_counted_by_what_they_mean() {
 }
 
 #[test]
-fn every_shape_of_our_own_is_read_as_what_it_says() {
+fn every_built_in_shape_is_read_as_its_kind() {
     let own = Way::built_in();
     assert!(own.shapes.len() > 30 && own.joints.len() > 5, "way.toml is not read");
     for (kind, shapes) in &own.shapes {

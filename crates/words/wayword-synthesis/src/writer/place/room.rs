@@ -1,4 +1,4 @@
-//! The room at the end, in words: its name, its storey, and what else tells which one it is.
+//! Words for the room at the end: its name, its storey, and properties that distinguish it from other rooms.
 
 use crate::{
     style::Wording,
@@ -16,14 +16,14 @@ pub(super) struct Goal<'a> {
     room: &'a str,
     level: Option<u32>,
     climb: Option<Climb>,
-    /// How likely it is that the storey is said where nothing asks for it.
+    /// Probability that the storey is named although it is not needed.
     names_level: f64,
     /// How many storeys the building has; 0 where that is not known.
     storeys: usize,
 }
 
-/// How much oftener than on average a text names the storey, beside those that need it to be clear, where it changes along the path, where the building has
-/// several, and where it has one.
+/// How often a text names the storey, relative to the style's average: where the storey changes along the path, where
+/// the building has several storeys, and where it has one.
 const BY_NEED: [f64; 3] = [1.5, 0.75, 0.2];
 
 impl<'a> Goal<'a> {
@@ -43,7 +43,7 @@ impl<'a> Goal<'a> {
         Self { wording, room, level, climb: last_climb(brief.walk), names_level, storeys }
     }
 
-    /// Whether the storey is said where nothing asks for it.
+    /// Draws whether the storey is named although it is not needed.
     pub(super) fn names_level(&self, rng: &mut ChaCha8Rng) -> bool {
         rng.random_bool(self.names_level)
     }
@@ -77,7 +77,7 @@ impl<'a> Goal<'a> {
         }
     }
 
-    /// The room with its article and with what of a description is about rooms.
+    /// The room with its article and the properties in `by` that are about rooms.
     pub(super) fn phrase(&self, by: &[&Distinction], names_level: bool, rng: &mut ChaCha8Rng) -> String {
         let must = by.iter().any(|by| matches!(by, Distinction::Level { .. }));
         let level = self.level.filter(|_| must || names_level);
@@ -90,7 +90,7 @@ impl<'a> Goal<'a> {
         let has_ordinal = |way: &str| ordinal(level).is_some() || !way.contains("{th}");
         let way = self.wording.draw("level", rng, has_ordinal).unwrap_or("the {r} on level {n}");
         let filled = way.replace("{n}", &level.to_string()).replace("{th}", ordinal(level).unwrap_or_default());
-        // "The bathroom next to the hall on level 2": the storey may stand at the end.
+        // "The bathroom next to the hall on level 2": the storey may also come last.
         let is_last = filled.starts_with("the {r} ") && rng.random_bool(0.35);
         if is_last && !qualifiers.is_empty() {
             let level = filled.trim_start_matches("the {r} ").to_owned();

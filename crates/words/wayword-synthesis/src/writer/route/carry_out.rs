@@ -1,4 +1,4 @@
-//! A plan with the things that are there.
+//! Carries out a plan: fills its places with the things that are there.
 
 use super::{Clause, Kind, MAIN, Role, onward::past};
 use crate::writer::{
@@ -58,12 +58,12 @@ fn things_of(plan: &[Clause], landmarks: &Landmarks<'_>) -> BTreeMap<usize, Land
     things
 }
 
-/// Whether a clause is there for a thing and stands in for no other.
+/// Whether a clause exists for a thing and is no replacement of another.
 fn is_own(clause: &Clause) -> bool {
     clause.is_offer() && clause.offer.as_ref().is_some_and(|offer| offer.stands_in_for.is_none())
 }
 
-/// What a place without a thing says.
+/// The clauses of a place that got no thing.
 fn without_thing(clause: Clause) -> Vec<Clause> {
     let is_straight = clause.offer.as_ref().is_some_and(|offer| offer.or_straight);
     let straight = is_straight.then(|| Clause { kind: Kind::Straight, ..bare(&clause) });
@@ -71,13 +71,14 @@ fn without_thing(clause: Clause) -> Vec<Clause> {
     straight.into_iter().chain(own).collect()
 }
 
-/// A clause of the same place without what its thing would need.
+/// A clause of the same place without the parts that belong to its thing.
 fn bare(clause: &Clause) -> Clause {
     let (follows_offer, number) = (clause.follows_offer, clause.number);
     Clause { follows_offer, number, ..Clause::new(clause.kind, clause.at, clause.weight) }
 }
 
-/// What a place says with its thing. `passed` places of the text come before it at which one may pass something.
+/// The clauses of a place with its thing. `passed` is the number of earlier places of the text where something is
+/// passed.
 fn with_thing(
     clause: Clause,
     (role, thing): (Role, Landmark),

@@ -1,4 +1,5 @@
-//! More to say of a way that is told in fewer words than the texts of its style. It goes by the way alone, too.
+//! Adds details to the plan of a text that is shorter than the texts of its style. Like the plan, this depends on the
+//! way alone.
 
 use super::{
     Clause, FILLER, MAIN, Offer, Role, SIDE,
@@ -13,24 +14,24 @@ use rand::{Rng, seq::IndexedRandom};
 use rand_chacha::ChaCha8Rng;
 use wayword_language::lexicon::room_name;
 
-/// What more there may be to say.
+/// A detail that can be added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum More {
-    /// A thing that one passes.
+    /// A thing that the walker passes.
     Landmark,
-    /// The side of one.
+    /// The side of a thing.
     Side,
-    /// A second thing beside one.
+    /// A second thing near one.
     Pair,
-    /// A room that one crosses.
+    /// A room that the walker crosses.
     Room,
-    /// A door through which one goes.
+    /// A door that the walker goes through.
     Door,
-    /// What stands in a room that one enters.
+    /// A thing in a room that the walker enters.
     With,
-    /// The room in which one stops.
+    /// The room of the stop.
     StopRoom,
-    /// That one goes on.
+    /// A "go straight".
     Onward,
 }
 
@@ -45,12 +46,12 @@ const ALL: [(f64, More); 8] = [
     (0.2, More::Onward),
 ];
 
-/// How often a thing that is hardly a landmark fills a text.
+/// Share of added things that may be poor landmarks.
 const LESS_SALIENT: f64 = 0.25;
-/// A text has at least so many places before its end for things.
+/// Least number of places for things before the end of a text.
 const LEAST_OFFERS: usize = 2;
 
-/// Says one thing more; `false` where nothing more is known.
+/// Adds one detail; `false` if there is none to add.
 pub(in crate::writer) fn fill(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice: Dice) -> bool {
     let mut left = ALL.to_vec();
     let mut rng = dice.by(&["more"]);
@@ -74,7 +75,7 @@ pub(in crate::writer) fn fill(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice
     false
 }
 
-/// Has a text offer places for things on the way, where almost anything will do. They stay however long it is.
+/// Makes sure that a text has places for things on the way, which accept almost any thing and are never dropped.
 pub(in crate::writer) fn offer_places(clauses: &mut Vec<Clause>, brief: &Brief<'_>, dice: Dice) {
     let offers = |clauses: &[Clause]| clauses.iter().rev().skip(1).filter(|clause| clause.offer.is_some()).count();
     let mut times = 0;
@@ -99,7 +100,7 @@ struct Filler<'a> {
 }
 
 impl Filler<'_> {
-    /// Puts a clause before the first one that is said at its frame or later.
+    /// Inserts a clause before the first one of its frame or a later frame.
     fn insert(&mut self, clause: Clause) {
         let at = self.clauses.iter().position(|other| other.at >= clause.at).unwrap_or(self.clauses.len());
         self.clauses.insert(at, clause);
@@ -114,7 +115,7 @@ impl Filler<'_> {
         true
     }
 
-    /// The offers on the way that may say more.
+    /// The last offer that `says_less` accepts.
     fn offers(&mut self, says_less: impl Fn(&Offer) -> bool) -> Option<&mut Offer> {
         let mut offers = self.clauses.iter_mut().rev().filter_map(|clause| clause.offer.as_mut());
         offers.find(|offer| says_less(offer))
@@ -150,7 +151,7 @@ impl Filler<'_> {
         false
     }
 
-    /// A door or doorway of which no clause speaks.
+    /// A door or doorway that no clause mentions.
     fn door(&mut self) -> bool {
         let doors = self.brief.memory.openings.iter().filter(|opening| opening.has_door);
         for opening in doors {
@@ -174,7 +175,7 @@ impl Filler<'_> {
         false
     }
 
-    /// What stands in a room that one enters.
+    /// A thing in a room that the walker enters.
     fn with(&mut self) -> bool {
         for at in 0..self.clauses.len() {
             let clause = &self.clauses[at];
@@ -204,7 +205,7 @@ impl Filler<'_> {
         says_more
     }
 
-    /// One goes on before what comes next.
+    /// A "go straight" before another clause.
     fn onward(&mut self) -> bool {
         let goes_on = |clause: &Clause| clause.is_offer() || clause.kind == Kind::Straight;
         let is_free = |at: &usize| {

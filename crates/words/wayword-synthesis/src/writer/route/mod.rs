@@ -1,6 +1,7 @@
-//! What there is to say about a path, clause by clause: each turn has its place, and rooms are entered before they are
-//! left. The plan of a text goes by the way alone. It has offers of places for things; which things are told there is seen
-//! when the plan is carried out, so that a thing that comes or goes changes the words of its own place only.
+//! Plans the clauses of a text about a way: turns, doors, rooms, stairs, and the stop.
+//!
+//! The plan depends on the way alone. It offers places for things, and `carry_out` fills them with the things that are
+//! there. So a thing that comes or goes changes only the words of its own place.
 
 mod carry_out;
 pub(super) mod fill;
@@ -21,12 +22,12 @@ use wayword_checks::memory::{Bend, Flight, Memory};
 use wayword_core::{Climb, Motion, Side, motion};
 use wayword_language::lexicon::room_name;
 
-/// A clause to be said.
+/// A planned clause.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Clause {
-    /// What it says.
+    /// Its kind.
     pub(super) kind: Kind,
-    /// The frame at which it is said.
+    /// Its frame.
     pub(super) at: usize,
     /// The side of its turn, or of its door or room.
     pub(super) side: Option<Side>,
@@ -36,23 +37,23 @@ pub(super) struct Clause {
     pub(super) room: Option<String>,
     /// The room that it leaves.
     pub(super) from: Option<String>,
-    /// How much it matters: [`KEPT`] is never left out.
+    /// How much it matters. A clause of weight [`KEPT`] is never left out.
     pub(super) weight: u8,
-    /// The thing that may be told with it, or for which it stands.
+    /// The place for a thing that it offers.
     pub(super) offer: Option<Offer>,
-    /// Whether a clause for a thing may stand right before it, so that it cannot say how far that one goes.
+    /// Whether a clause for a thing may come right before it, so that it cannot limit an earlier "go straight".
     pub(super) follows_offer: bool,
     /// How many clauses of its kind come before it in the plan, things left out.
     number: usize,
 }
 
-/// Weight of what is never left out.
+/// Weight of clauses that are never left out.
 pub(super) const KEPT: u8 = 4;
 /// Weight of turns, climbs and the last room.
 const MAIN: u8 = 3;
 /// Weight of landmarks and of rooms on the way.
 const SIDE: u8 = 2;
-/// Weight of what says that one goes on.
+/// Weight of "go straight" and the like.
 const FILLER: u8 = 1;
 
 /// Least salience of a landmark on the way.
@@ -61,9 +62,9 @@ const WALKED_PAST: u8 = 2;
 const STOPPED_AT: u8 = 1;
 /// A hop longer than this is worth a clause, metres.
 pub(super) const LONG_M: f64 = 3.0;
-/// Something may be told of every so many metres of a way without turns and doors.
+/// On a way without turns and doors, one clause is possible for each stretch of this length, metres.
 const STRETCH_M: f64 = 2.0;
-/// One stops in a doorway where the hop through it is no longer than this, metres.
+/// The walk can stop in a doorway if the hop through it is at most this long, metres.
 const DOORWAY_M: f64 = 2.2;
 
 impl Clause {
@@ -72,22 +73,22 @@ impl Clause {
         Self { kind, at, side, thing, room, from, weight, offer: None, follows_offer: false, number: 0 }
     }
 
-    /// A clause that is there for a thing alone.
+    /// A clause that exists only for a thing.
     fn for_a_thing(hop: usize, offer: Offer) -> Self {
         Self { offer: Some(offer), ..Self::new(Kind::Pass, hop, SIDE) }
     }
 
-    /// Whether it is there for a thing alone.
+    /// Whether it exists only for a thing.
     pub(super) fn is_offer(&self) -> bool {
         self.offer.as_ref().is_some_and(|offer| offer.role == Role::Onward)
     }
 
-    /// That one goes straight on before it.
+    /// A "go straight" clause to put before it.
     pub(super) fn straight_on(&self) -> Self {
         Self::new(Kind::Straight, self.at, self.weight)
     }
 
-    /// Says that one goes straight on where it has no thing.
+    /// Lets it fall back to "go straight" if it gets no thing.
     pub(super) fn or_straight_on(&mut self) {
         if let Some(offer) = &mut self.offer {
             offer.or_straight = true;
@@ -114,8 +115,9 @@ impl Clause {
         self
     }
 
-    /// What it draws for one purpose: a clause that is there for a thing by its thing, and another by its place among those of
-    /// its kind. Frames have no part in it, so that other frames of the same way draw the same.
+    /// The random generator of the clause for one purpose. A clause for a thing is identified by the thing, any other
+    /// by its number among those of its kind. Frames play no role, so the same way with other frames gives the same
+    /// draws.
     pub(super) fn drawn(&self, purpose: &str, dice: Dice) -> ChaCha8Rng {
         let kind = format!("{:?}", self.kind);
         match &self.thing {
@@ -149,7 +151,7 @@ pub(super) fn clauses(brief: &Brief<'_>, dice: Dice) -> Vec<Clause> {
     planner.clauses
 }
 
-/// Gives the clauses of a plan their places among those of their kinds.
+/// Numbers the clauses of each kind.
 pub(super) fn numbered(mut plan: Vec<Clause>) -> Vec<Clause> {
     let mut told: BTreeMap<Kind, usize> = BTreeMap::new();
     for clause in plan.iter_mut().filter(|clause| !clause.is_offer()) {
@@ -164,12 +166,12 @@ struct Planner<'a> {
     brief: &'a Brief<'a>,
     memory: &'a Memory,
     dice: Dice,
-    /// What is drawn for the step that is told.
+    /// The random generator of the current step.
     rng: ChaCha8Rng,
     clauses: Vec<Clause>,
-    /// The room in which the text has the walker now, where it says so.
+    /// The room that the walker is in according to the text so far, if it is known.
     here: Option<String>,
-    /// Whether the text has told to go along the hallway in which one is.
+    /// Whether the text has already sent the walker along the current hallway.
     along: bool,
 }
 
@@ -202,14 +204,15 @@ impl Planner<'_> {
         }
     }
 
-    /// What a step draws by: the turns and doors before it, and how far it is from the last of them.
+    /// The name of a step's draws: the number of turns and doors before it, and its distance from the last of them.
     fn step(&self, at: usize) -> String {
         let bends = self.memory.bends.iter().filter(|bend| bend.first < at).count();
         let openings = self.memory.openings.iter().filter(|opening| opening.before < at).count();
         format!("{bends} {openings} {}", self.stretch(at))
     }
 
-    /// In which stretch of a way without turns and doors a frame lies, from 0. Of an unknown motion each hop is one.
+    /// The number of the stretch, from 0, in which a frame lies since the last turn or door. If the motion is unknown,
+    /// each hop is a stretch.
     fn stretch(&self, at: usize) -> usize {
         let bends = self.memory.bends.iter().map(|bend| bend.first).filter(|first| *first <= at);
         let doors = self.memory.openings.iter().map(|opening| opening.behind).filter(|behind| *behind <= at);
@@ -220,7 +223,7 @@ impl Planner<'_> {
         }
     }
 
-    /// The turn that is told at a frame. One that begins on stairs and ends behind them is told behind them.
+    /// The turn to describe at a frame. A turn that begins on stairs and ends after them is described after them.
     fn bend_at(&self, at: usize) -> Option<Bend> {
         let flight = self.memory.flights.iter().find(|flight| flight.to == at);
         let begins_here = |bend: &&Bend| {
@@ -239,7 +242,7 @@ impl Planner<'_> {
         self.clauses.push(clause);
     }
 
-    /// The text has the walker in a room now.
+    /// Records the room that the walker is in according to the text.
     fn enter(&mut self, room: Option<&str>) {
         self.here = room.map(str::to_owned);
         self.along = false;
@@ -262,12 +265,12 @@ pub(super) fn last_climb(walk: &Walk) -> Option<Climb> {
     (0..walk.moves.len()).rev().find_map(|at| motion::flight(&walk.moves, at)).map(|(_, climb)| climb)
 }
 
-/// A room that one can walk into; stairs are climbed instead.
+/// The name of a room, if a walker can walk into it; stairs are climbed instead.
 pub(super) fn usable_room(name: &str) -> Option<String> {
     (room_name(name) != Some("stairs")).then(|| name.to_owned())
 }
 
-/// Whether a shape may be said of a motion: where it is unknown, none says "straight".
+/// Whether a shape fits a motion: if the motion is unknown, it must not contain "straight" or the like.
 pub(super) fn suits(shape: &str, motion: Motion) -> bool {
     motion.is_known() || !["straight", "forward", "ahead"].iter().any(|word| shape.contains(word))
 }

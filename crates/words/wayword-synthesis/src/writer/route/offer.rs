@@ -1,4 +1,4 @@
-//! Places of a text at which a thing may be told.
+//! Places of a plan where a thing may be named.
 
 use super::{Clause, STOPPED_AT, WALKED_PAST};
 use crate::{
@@ -7,53 +7,53 @@ use crate::{
 };
 use wayword_checks::Memory;
 
-/// Where a thing may be told. Whether there is such a place goes by the way alone, and never by what is seen there.
+/// A place for a thing. Its existence depends on the way alone, and never on the things that are seen there.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::writer) struct Offer {
-    /// What the thing is told for.
+    /// The role of the thing.
     pub(in crate::writer) role: Role,
-    /// The frame at which things are looked for.
+    /// The frame for which things are searched.
     pub(super) frame: usize,
-    /// Which things will do.
+    /// Which things are acceptable.
     pub(super) things: Things,
-    /// Whether the side is told on which one passes the thing.
+    /// Whether the side on which the walker passes the thing is named.
     pub(in crate::writer) tells_side: bool,
-    /// Whether a second thing beside it is told, too.
+    /// Whether a second thing near it is named too.
     pub(in crate::writer) pair: bool,
-    /// Whether the text says that one goes straight on where there is no thing.
+    /// Whether the text falls back to "go straight" if there is no thing.
     pub(super) or_straight: bool,
-    /// The hop of the offer for which it stands in: it tells a thing only where that one has none.
+    /// The hop of another offer that it replaces: it is used only if that one gets no thing.
     pub(super) stands_in_for: Option<usize>,
 }
 
-/// What a thing is told for.
+/// The role of a thing in a clause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::writer) enum Role {
-    /// One turns there.
+    /// The walker turns there.
     Turn,
-    /// One passes it and enters a room.
+    /// The walker passes it and enters a room.
     PassEnter,
-    /// It stands in a room that one enters.
+    /// It is in a room that the walker enters.
     EnterWith,
-    /// One goes past it or to it.
+    /// The walker goes past it or to it.
     Onward,
-    /// One stops there, in words of this kind.
+    /// The walker stops there; the clause is of this kind.
     Stop(Kind),
 }
 
-/// Which things will do.
+/// Which things are acceptable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Things {
     /// Landmarks.
     Fair,
-    /// Things that are hardly landmarks, too.
+    /// Poor landmarks, too.
     Faint,
-    /// Whatever shows, beside the walker or ahead.
+    /// Any visible thing, to the side or ahead.
     Any,
 }
 
 impl Offer {
-    /// Where a thing at a frame is told for some purpose.
+    /// A place for a thing at a frame, with a role.
     pub(super) fn new(role: Role, frame: usize) -> Self {
         Self {
             role,
@@ -70,7 +70,7 @@ impl Offer {
         Self { things, ..self }
     }
 
-    /// Where its things are looked for.
+    /// The spot with the searches for its thing.
     pub(super) fn spot(&self) -> Spot {
         let at = |frame, salience, to| Search { frame, salience, to };
         let frame = self.frame;
@@ -90,7 +90,7 @@ impl Offer {
     }
 }
 
-/// Hops within a room, between the first frame and the last, at which no thing may be told yet.
+/// Hops within a room, between the first frame and the last, that have no place for a thing yet.
 pub(super) fn free_hops(plan: &[Clause], memory: &Memory) -> Vec<usize> {
     let last = memory.frames().saturating_sub(2);
     let is_free = |hop: &usize| {
@@ -102,13 +102,13 @@ pub(super) fn free_hops(plan: &[Clause], memory: &Memory) -> Vec<usize> {
     (0..last).filter(is_free).collect()
 }
 
-/// Puts a clause for a thing on a hop behind the others of its frame: what one turns by there comes before it.
+/// Inserts a clause for a thing after the other clauses of its frame: a landmark at a turn comes before it.
 pub(super) fn insert(plan: &mut Vec<Clause>, hop: usize, offer: Offer) {
     let at = plan.iter().position(|other| other.at > hop).unwrap_or(plan.len());
     plan.insert(at, Clause::for_a_thing(hop, offer));
 }
 
-/// Beside each place for a thing on the way others that stand in where it has none.
+/// Adds replacements next to each place for a thing on the way; they are used only if that place gets no thing.
 pub(in crate::writer) fn with_stand_ins(mut plan: Vec<Clause>, memory: &Memory) -> Vec<Clause> {
     let offered: Vec<(usize, Offer)> = plan
         .iter()

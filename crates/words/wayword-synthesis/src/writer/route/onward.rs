@@ -1,4 +1,4 @@
-//! Straight on: past things, and along hallways.
+//! Plans hops that go straight on: past things, and along hallways.
 
 use super::{Clause, FILLER, LONG_M, MAIN, Offer, Planner, Role, SIDE, usable_room};
 use crate::style::way::{Kind, Way};
@@ -38,13 +38,14 @@ impl Planner<'_> {
         }
     }
 
-    /// Whether the text says nothing of the turn at the start, so that what lies ahead after it tells the way.
+    /// Whether the text leaves out the turn at the start, so that the first landmark has to show the direction.
     fn is_first_hop_of_untold_turn(&self, at: usize) -> bool {
         at == 0 && self.clauses.is_empty() && self.memory.bends.first().is_some_and(|bend| bend.first == 0)
     }
 }
 
-/// How one goes on by a thing: past what one passes, and otherwise to it. `share` from 0 to 1 draws.
+/// The kind of clause for a thing on the way: past a thing that is passed, otherwise to it. `share` from 0 to 1 selects
+/// among the possible kinds.
 pub(super) fn past(way: &Way, passed: Option<Side>, side: Option<Side>, share: f64) -> Kind {
     let mut kinds = Vec::new();
     if passed.is_some() || side.is_none() {

@@ -1,4 +1,4 @@
-//! From one room into another.
+//! Plans the change from one room into another, with the turn before it.
 
 use super::{Clause, MAIN, Offer, Planner, Role, SIDE, usable_room};
 use crate::{style::way::Kind, writer::phrases::draw};
@@ -7,17 +7,17 @@ use wayword_checks::memory::{Bend, Opening};
 use wayword_core::{Side, motion};
 use wayword_language::lexicon::{Class, room_name, thing};
 
-/// A room is left soon where the path leaves it within so many hops.
+/// The start room counts as left soon if the path leaves it within this many hops.
 const LEFT_SOON: usize = 2;
-/// How often a text begins with that.
+/// Share of texts that then begin with leaving it.
 const LEFT_AT_ONCE: f64 = 0.6;
 
-/// One stands in a door that is no farther than this, metres.
+/// Greatest distance from a door at which the walker counts as being in it, metres.
 const IN_DOOR_M: f64 = 0.5;
 
 impl Planner<'_> {
-    /// Many texts begin with leaving the room of the start, however one turns at the start. The frame from which the way goes
-    /// on.
+    /// Begins the text with leaving the room of the start, as many texts do, without describing the first turn. Returns
+    /// the frame where the plan goes on.
     pub(super) fn leave_at_once(&mut self) -> Option<usize> {
         let opening = self.memory.openings.first().filter(|opening| opening.before <= LEFT_SOON)?;
         let mut bends = self.memory.bends.iter().filter(|bend| bend.first > 0);
@@ -50,7 +50,7 @@ impl Planner<'_> {
         Some(opening.behind)
     }
 
-    /// Into another room, with the turn before it, if any.
+    /// Plans the change into another room.
     pub(super) fn change(&mut self, opening: &Opening) {
         let at = opening.before;
         self.go_on_to(at);
@@ -95,7 +95,7 @@ impl Planner<'_> {
             self.enter(None);
             return;
         };
-        // Whoever turns on the way through the next room has to know which room that is.
+        // A walker who turns on the way through the next room needs to know which room it is.
         let until = next.map_or(self.memory.frames(), |next| next.before + 1);
         let turns = self.memory.bends.iter().any(|bend| (at..until).contains(&bend.first));
         let weight = if is_last || at == 0 || turns { MAIN } else { SIDE };
@@ -128,7 +128,7 @@ impl Planner<'_> {
         self.enter(to.as_deref().filter(|_| told));
     }
 
-    /// Whether one stands in a door or doorway at a frame, so that a turn there is one behind it.
+    /// Whether the walker is in a door or doorway at a frame, so that a turn there happens behind the door.
     fn stands_in_a_door(&self, at: usize) -> bool {
         let is_door = |name: &str| thing(name).is_some_and(|thing| thing.class == Class::Door);
         let doors = self.memory.things.iter().filter(|seen| seen.position.is_some() && is_door(&seen.name));
@@ -154,7 +154,7 @@ impl Planner<'_> {
             self.push(Clause::new(Kind::TurnAround, at, MAIN));
             return self.change(opening);
         }
-        // Who leaves the room of the start needs no turn; nor does a slight one.
+        // Leaving the room of the start makes a turn clear by itself, and a slight turn needs no mention.
         let is_implied = at == 0 && can_leave && self.rng.random_bool(0.7);
         if is_implied || self.is_left_out(bend) {
             return self.change(opening);

@@ -1,11 +1,11 @@
-//! The end of the way.
+//! Plans the last clause: where the walk stops.
 
 use super::{Clause, DOORWAY_M, KEPT, Offer, Planner, Role, usable_room};
 use crate::{style::way::Kind, writer::phrases::draw};
 use wayword_core::Climb;
 use wayword_language::lexicon::{agree, room_name};
 
-/// How much seldomer the last room is named twice.
+/// Factor for naming the last room a second time.
 const NAMED_AGAIN: f64 = 0.1;
 
 impl Planner<'_> {
@@ -16,10 +16,10 @@ impl Planner<'_> {
         let is_told = room.is_some() && self.here == room;
         let flight = self.memory.flights.last().filter(|flight| flight.to == end).map(|flight| flight.climb);
         let last_hop_m = self.brief.walk.moves.last().map_or(f64::INFINITY, |step| step.distance_m);
-        // A doorway that nothing shows could not be checked.
+        // A doorway that no caption shows could not be checked.
         let shows_doorway = self.memory.seen_from(end).any(|seen| agree(&seen.name, "doorway"));
         let door = self.memory.openings.last().filter(|opening| opening.behind == end && shows_doorway);
-        // Where the text has the walker in another room, it names the last one.
+        // If the walker is in another room according to the text, the stop names the last room.
         let misleads = !is_told && self.names_another(room.as_deref());
         let mut kinds: Vec<(f64, Kind)> = Vec::new();
         match flight {
@@ -37,7 +37,7 @@ impl Planner<'_> {
                 kinds.push((self.count(Kind::StopInDoorwayOf) * 2.0, Kind::StopInDoorwayOf));
             }
         }
-        // Hallways are long: most texts say more than that one stops in one.
+        // Hallways are long, so most texts give more than "stop in the hallway".
         let in_room = if room.as_deref().and_then(room_name) == Some("hallway") { 0.4 } else { 1.0 };
         if room.is_some() && !is_told {
             kinds.push((self.count(Kind::StopIn) * 1.5 * in_room + 1.0, Kind::StopIn));
@@ -48,7 +48,7 @@ impl Planner<'_> {
                 .is_some_and(|before| !before.is_bare() && before.kind != Kind::Straight && !before.is_offer());
             kinds.push((self.count(Kind::Stop) * if has_place { 0.5 } else { 0.02 }, Kind::Stop));
             if room.is_some() {
-                // Who has just told to enter it does not name it again.
+                // A text that has just sent the walker into it does not name it again.
                 kinds.push((self.count(Kind::StopIn) * in_room * NAMED_AGAIN, Kind::StopIn));
             }
         }

@@ -1,4 +1,4 @@
-//! Turns within a room, and the turn at the start.
+//! Plans turns within a room, and the turn at the start.
 
 use super::{Clause, LONG_M, MAIN, Offer, Planner, Role, usable_room};
 use crate::{style::way::Kind, writer::phrases::draw};
@@ -8,7 +8,7 @@ use wayword_core::{Climb, Side, rng};
 use wayword_language::lexicon::room_name;
 
 impl Planner<'_> {
-    /// A turn within a room: at a landmark, at the stairs, in the room, or after what was just said.
+    /// Plans a turn within a room: at a landmark, at the stairs, in the room, or right after the previous clause.
     pub(super) fn turn(&mut self, bend: Bend) {
         let (at, side) = (bend.first, bend.side());
         if at == 0 {
@@ -57,18 +57,18 @@ impl Planner<'_> {
         self.push(if offers { turn.offering(offer) } else { turn });
     }
 
-    /// Whether the clause before a turn says where it is: one that is no turn itself, not far before it.
+    /// Whether the clause before a turn makes its place clear: it is no turn itself, and not far before it.
     fn follows_a_place(&self, at: usize) -> bool {
         let before = self.clauses.iter().rfind(|before| !before.is_offer());
         before.is_some_and(|before| !before.is_bare() && before.at + 1 >= at)
     }
 
-    /// How many hops one has walked in the room of a frame before it.
+    /// Number of hops in the room of a frame before it.
     fn walked_in(&self, at: usize) -> usize {
         self.memory.stay(at).map_or(0, |stay| at - stay.entered)
     }
 
-    /// Whether one has walked some way in a room since the last clause, and from which frame.
+    /// Where the walker has gone a long way in a room since the last clause, its first frame and the room.
     fn walked_since(&self, at: usize) -> Option<(usize, &str)> {
         let stay = self.memory.stay(at)?;
         let told = self.clauses.last().map_or(0, |before| before.at + 1);
@@ -76,12 +76,13 @@ impl Planner<'_> {
         (!self.along && self.brief.walk.walked_m(from, at) >= LONG_M).then_some((from, stay.room.as_str()))
     }
 
-    /// Whether a turn without its thing needs to be told how one gets there.
+    /// Whether a turn that gets no thing needs a "go straight" before it.
     fn straight_before(&self, at: usize) -> bool {
         self.walked_since(at).is_some() && !self.clauses.last().is_some_and(Clause::is_offer)
     }
 
-    /// Who has walked some way in a room since the last clause is told so, before a turn or a door.
+    /// Adds "go straight" or "go along the hallway" before a turn or a door if the walker has gone a long way since the
+    /// last clause.
     pub(super) fn go_on_to(&mut self, at: usize) {
         let Some((from, room)) = self.walked_since(at) else { return };
         let room = usable_room(room);
@@ -91,7 +92,7 @@ impl Planner<'_> {
         }
     }
 
-    /// The turn at the start. What lies ahead after it tells it, too.
+    /// Plans the turn at the start. It is often left out, because the first landmark shows the direction too.
     fn first_turn(&mut self, bend: Bend) {
         let side = bend.side();
         let leaves_soon =
@@ -108,8 +109,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Whether a turn goes unsaid: people leave out small ones that the way asks for by itself. All candidates for a text leave
-    /// out the same ones, and on the way back the same ones as on the way there.
+    /// Whether a turn is left out: people do not mention small turns that the way requires anyway. All candidates of a
+    /// text leave out the same ones, and the way back the same ones as the way there.
     pub(super) fn is_left_out(&self, bend: Bend) -> bool {
         if bend.turn_rad.to_degrees().abs() >= HARDLY_DEG {
             return false;
@@ -126,5 +127,5 @@ impl Planner<'_> {
 
 /// Smaller turns may be left out, degrees.
 const HARDLY_DEG: f64 = 40.0;
-/// And so many of them are.
+/// Share of them that is left out.
 const LEFT_OUT: f64 = 0.6;
