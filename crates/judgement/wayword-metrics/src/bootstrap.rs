@@ -1,4 +1,4 @@
-//! How far a mean can be trusted when values come in groups.
+//! Bootstrap intervals for means of values that come in clusters, as several instructions about one path do.
 
 use crate::Drawing;
 use rand::Rng;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_core::rng;
 
-/// Most resamples that are drawn; more would change no digit that is shown.
+/// Most resamples that are drawn; more would not change the digits that reports show.
 const MOST_RESAMPLES: usize = 100_000;
 
 /// A mean with its interval.
@@ -36,8 +36,8 @@ pub fn clustered_interval<C: Ord>(values: &[(C, f64)], resamples: usize, level: 
     clustered_interval_of(values, resamples.clamp(1, MOST_RESAMPLES), level, draw)
 }
 
-/// As [`clustered_interval`], over resamples that the caller draws: `draw` is given the number of clusters, and returns the
-/// numbers of those that it draws, in the order of the clusters. A number that no cluster has is left out.
+/// As [`clustered_interval`], but the caller draws the resamples: `draw` gets the number of clusters and returns the indices of
+/// the drawn ones, which count clusters in their order. An index beyond the last cluster is ignored.
 #[must_use]
 pub fn clustered_interval_of<C: Ord>(
     values: &[(C, f64)],
@@ -67,9 +67,9 @@ pub fn clustered_interval_of<C: Ord>(
     })
 }
 
-/// Intervals of figures that are no means: `figures` is given the numbers of the clusters that were drawn, some of them
-/// several times. A draw that gives no number for a figure is left out of that figure's interval, which is then NaN
-/// where no draw gives one.
+/// Intervals of figures that are no means, as corpus BLEU. `figures` gets the indices of the drawn clusters, some of them
+/// repeatedly, and computes all figures of that draw. A value that is not finite is left out of its figure's interval; the
+/// interval is NaN if no draw gives a finite value.
 pub(crate) fn interval_of<const N: usize>(
     clusters: usize,
     drawing: &Drawing,
@@ -90,8 +90,8 @@ pub(crate) fn interval_of<const N: usize>(
     })
 }
 
-/// The ends of the interval that leaves out as many of the values on either side, so that it holds the share `level` of them;
-/// `None` of no values.
+/// The ends of the central interval that contains the share `level` of the values: equally many are cut off on both sides.
+/// `None` if there are no values.
 #[must_use]
 pub fn percentile_interval(mut values: Vec<f64>, level: f64) -> Option<[f64; 2]> {
     if values.is_empty() {
@@ -122,7 +122,7 @@ impl Sum {
     }
 }
 
-/// A quantile of sorted values, interpolated where it falls between two.
+/// A quantile of sorted values, interpolated linearly between the two neighbours.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
     let below = sorted[at.floor() as usize];
@@ -143,12 +143,12 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_interval() {
+    fn clustered_interval_of_no_values_is_none() {
         assert_eq!(clustered_interval::<u8>(&[], 1000, 0.95, 0), None);
     }
 
     #[test]
-    fn a_single_cluster_cannot_vary() {
+    fn clustered_interval_of_one_cluster_has_no_width() {
         let of_one = interval(&[(1, 0.0), (1, 1.0), (1, 0.5)], 0.95);
         assert_eq!((of_one.mean, of_one.low, of_one.high), (0.5, 0.5, 0.5));
         assert_eq!((of_one.values, of_one.clusters), (3, 1));
@@ -165,7 +165,7 @@ mod tests {
 
     /// 100 coins: a mean of one half has a standard error of 0.05.
     #[test]
-    fn the_interval_is_as_wide_as_theory_has_it() {
+    fn clustered_interval_has_the_width_of_theory() {
         let coins: Vec<(u8, f64)> = (0..100).map(|n| (n, f64::from(n % 2))).collect();
         let found = clustered_interval(&coins, 20_000, 0.95, 1).unwrap();
         assert!((width(found) - 2.0 * 1.96 * 0.05).abs() < 0.02, "{found:?}");

@@ -1,11 +1,11 @@
-//! How far two figures of the same items go together.
+//! Three correlations between two figures of the same items: Pearson's, Spearman's and Kendall's tau-b.
 //!
-//! All three take pairs by position, and give `None` where there is nothing to say: lists of different lengths, fewer than
-//! two items, a value that is no number, or a side on which all values are the same.
+//! All take two lists and pair their values by position. They give `None` where a correlation is not defined: for lists of
+//! different lengths, fewer than two items, a value that is not finite, or a list in which all values are equal.
 
 use std::cmp::Ordering;
 
-/// Pearson's correlation. Where one side holds only 0 and 1, it is what is called the point-biserial correlation.
+/// Pearson's correlation. If one list contains only 0 and 1, this is the point-biserial correlation.
 #[must_use]
 pub fn pearson(a: &[f64], b: &[f64]) -> Option<f64> {
     let (a, b) = (centred(a)?, centred(b)?);
@@ -14,7 +14,7 @@ pub fn pearson(a: &[f64], b: &[f64]) -> Option<f64> {
     }
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
     let scale = (dot(&a, &a) * dot(&b, &b)).sqrt();
-    // A side whose values are all the same leaves rounding, not zero.
+    // If all values of a list are equal, its variance may be a rounding error instead of zero.
     let varies = |of: &[f64]| of.iter().any(|value| *value != of[0]);
     (varies(&a) && varies(&b) && scale > 0.0).then(|| (dot(&a, &b) / scale).clamp(-1.0, 1.0))
 }
@@ -26,7 +26,7 @@ pub fn spearman(a: &[f64], b: &[f64]) -> Option<f64> {
 }
 
 /// Kendall's tau-b: of all pairs of items, how many more are in the same order on both sides than in opposite orders,
-/// over the geometric mean of the pairs that each side tells apart.
+/// over the geometric mean of the numbers of pairs that each side orders (does not tie).
 #[must_use]
 pub fn kendall_tau_b(a: &[f64], b: &[f64]) -> Option<f64> {
     if a.len() != b.len() || a.len() < 2 || a.iter().chain(b).any(|value| !value.is_finite()) {
@@ -48,7 +48,7 @@ pub fn kendall_tau_b(a: &[f64], b: &[f64]) -> Option<f64> {
     (scale > 0.0).then(|| ((concordant as f64 - discordant as f64) / scale).clamp(-1.0, 1.0))
 }
 
-/// The two zeros are one value.
+/// Turns -0.0 into 0.0: `total_cmp` would sort them apart, but they are one value.
 fn clean(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn order_alone_counts_for_ranks() {
+    fn rank_correlations_depend_only_on_the_order() {
         let (a, b) = ([1.0, 2.0, 3.0, 4.0], [1.0, 10.0, 100.0, 1e6]);
         assert_eq!(spearman(&a, &b), Some(1.0));
         assert_eq!(kendall_tau_b(&a, &b), Some(1.0));
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_varies_there_is_no_correlation() {
+    fn correlations_are_none_for_constant_values() {
         for of in ALL {
             assert_eq!(of(&[], &[]), None);
             assert_eq!(of(&[1.0], &[2.0]), None);
@@ -194,7 +194,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn tau_is_what_its_definition_says(values in prop::collection::vec((0..6u8, 0..6u8), 0..40)) {
+        fn kendall_tau_b_follows_its_definition(values in prop::collection::vec((0..6u8, 0..6u8), 0..40)) {
             let (a, b): (Vec<f64>, Vec<f64>) = values.iter().map(|(a, b)| (f64::from(*a), f64::from(*b))).unzip();
             match (kendall_tau_b(&a, &b), tau_by_pairs(&a, &b)) {
                 (Some(found), Some(expected)) => prop_assert!((found - expected).abs() < 1e-12),

@@ -1,8 +1,8 @@
-//! Figures about instructions and trajectories, each with its interval and the figures to compare it with.
+//! Figures about instructions, trajectories and studies with people, each with an interval and with the anchors that give it a
+//! meaning (as: what another person reaches, and what a text about another path reaches).
 //!
-//! Architecture invariant: nothing here reads a file, runs a model or knows a platform beyond the graph that the
-//! platform gives; vectors come from the caller. Distances are computed once and kept ([`Atlas`]), and the same input
-//! gives the same figures.
+//! Architecture invariant: this crate does not read files or run models, and uses only the graph of a platform; vectors come
+//! from the caller. Distances are computed once and cached ([`Atlas`]), and equal input gives equal figures.
 
 mod bootstrap;
 pub mod captions;

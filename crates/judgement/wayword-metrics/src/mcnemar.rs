@@ -1,8 +1,9 @@
-//! McNemar's test of two methods on the same items.
+//! McNemar's test: whether two methods differ in success on the same items. It looks only at the items where exactly one of them
+//! succeeds; under chance, each of them wins half of these.
 
 use serde::{Deserialize, Serialize};
 
-/// How two methods differ on the items where one succeeds and the other does not.
+/// The result of McNemar's test of two methods.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct McNemar {
     /// Items on which the first alone succeeds.
@@ -54,14 +55,14 @@ mod tests {
     }
 
     #[test]
-    fn ways_that_never_differ_have_no_evidence_against_them() {
+    fn mcnemar_p_is_one_for_methods_that_never_differ() {
         let same = McNemar::of([(true, true), (false, false)].into_iter());
         assert_eq!(same, McNemar { only_first: 0, only_second: 0, p: 1.0 });
         assert_eq!(test(8, 8).p, 1.0);
     }
 
     #[test]
-    fn pairs_are_counted_by_who_succeeds_alone() {
+    fn mcnemar_counts_pairs_by_the_only_success() {
         let found = McNemar::of([(true, false), (true, false), (false, true), (true, true)].into_iter());
         assert_eq!((found.only_first, found.only_second), (2, 1));
     }
@@ -89,7 +90,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn p_is_a_probability_that_falls_as_the_ways_part(agree in 0..400usize, apart in 1..400usize) {
+        fn mcnemar_p_falls_as_methods_differ_more(agree in 0..400usize, apart in 1..400usize) {
             let (near, far) = (test(agree, agree + apart - 1).p, test(agree, agree + apart).p);
             prop_assert!((0.0..=1.0).contains(&far));
             prop_assert!(far <= near * (1.0 + 1e-9), "{far} after {near}");

@@ -1,15 +1,15 @@
 //! How well texts agree with pictures, after CLIPScore (Hessel et al. 2021, arXiv 2104.08718).
 //!
-//! CLIPScore is of a caption and one picture. A text of a path is longer than CLIP reads, and the path has several pictures,
-//! so there are two figures: of the text's parts, each by the picture that it fits best, and of the text as a whole.
+//! CLIPScore rates one caption for one picture. An instruction is longer than CLIP's input, and its path has several pictures, so
+//! there are two figures: one rates each part of the text with the picture that it fits best, the other rates the whole text.
 
 use crate::{Drawing, Estimate, clustered_interval};
 use serde::Serialize;
 
-/// By what CLIPScore multiplies a cosine, so that most scores lie between 0 and 1.
+/// The factor by which CLIPScore multiplies a cosine, so that most scores lie between 0 and 1.
 const WEIGHT: f64 = 2.5;
 
-/// What CLIPScore puts before a text.
+/// The words that CLIPScore puts before a text.
 pub const PREFIX: &str = "A photo depicts ";
 
 /// The score of a text and a picture, from the cosine of their vectors.
@@ -42,12 +42,12 @@ fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// What agrees with the pictures of one item.
+/// The scores of one item's texts with the pictures of the item's path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen<'a> {
     /// The path: items of one path are not independent.
     pub cluster: &'a str,
-    /// The text that is judged.
+    /// Scores of the text that is judged.
     pub text: Agreed,
     /// Another person's text of the item.
     pub person: Option<Agreed>,
@@ -64,7 +64,7 @@ pub struct Figures {
     pub whole: Estimate,
 }
 
-/// A set of texts beside the two anchors, all with the pictures of the items' own paths.
+/// Figures of a set of texts and of the two anchors, all with the pictures of the items' own paths.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Anchored {
     /// The texts.

@@ -1,4 +1,5 @@
-//! How alike two sets of instructions are, with the two anchors without which the figure says nothing.
+//! How alike two sets of instructions are, by the cosines of their text vectors. A cosine has no meaning by itself, so two
+//! anchors come with it: two people's texts about the same item, and texts about different paths.
 
 use crate::{Estimate, clustered_interval};
 use rand::Rng;
@@ -6,10 +7,10 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::rng;
 
-/// How many other items each item is compared with, for the anchor of random pairs.
+/// How many random items of other paths each item is compared with, for the anchor of random pairs.
 const OTHERS: usize = 10;
 
-/// What is said about one item.
+/// The text vectors of one item.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Said<'a> {
     /// The path that it is about: items of one path are not independent.
@@ -23,7 +24,7 @@ pub struct Said<'a> {
 pub struct Drawing {
     /// Resamples of the intervals.
     pub resamples: usize,
-    /// What the intervals cover, as 0.95.
+    /// The share that the intervals cover, as 0.95.
     pub level: f64,
     /// Seed of the intervals and of the random pairs.
     pub seed: u64,
@@ -34,11 +35,11 @@ pub struct Drawing {
 pub struct Similarity {
     /// A against B: over items, the mean cosine of a text in A and a text in B of the same item. `None` without a common item.
     pub figure: Option<Estimate>,
-    /// The same between two texts of B on the same item: what two people reach. `None` where no item has two.
+    /// The same between two texts of B on one item: the similarity that two people reach. `None` where no item has two.
     pub same_item: Option<Estimate>,
-    /// The same between a text of B on the item and one on an item of another path, drawn at random: what a text
-    /// reaches whose author has seen nothing of the path. Its interval takes only the path of the first text into
-    /// account. `None` where there is a single path.
+    /// The same between a text of B on the item and one on an item of another path, drawn at random: the similarity that an
+    /// author reaches without having seen the path. Its interval takes only the path of the first text into account. `None`
+    /// where there is a single path.
     pub random_pairs: Option<Estimate>,
     /// Items that A alone has.
     pub only_in_a: usize,
@@ -77,18 +78,18 @@ pub fn similarity(a: &BTreeMap<String, Said<'_>>, b: &BTreeMap<String, Said<'_>>
     }
 }
 
-/// Over all pairs of a text in A and one in B.
+/// The mean cosine over all pairs of a text of `a` and one of `b`.
 fn across(a: &Said<'_>, b: &Said<'_>) -> Option<f64> {
     mean(a.vectors.iter().flat_map(|a| b.vectors.iter().map(move |b| cosine(a, b))))
 }
 
-/// Over all unordered pairs of texts.
+/// The mean cosine over all unordered pairs of one item's texts; `None` for fewer than two.
 fn within(said: &Said<'_>) -> Option<f64> {
     let texts = said.vectors.iter().enumerate();
     mean(texts.flat_map(|(at, a)| said.vectors[at + 1..].iter().map(move |b| cosine(a, b))))
 }
 
-/// Each item against items of other paths, drawn with replacement.
+/// The mean cosine of each item with items of other paths, drawn with replacement; with the path of the item.
 fn at_random<'a>(items: &[(&str, &'a Said<'_>)], seed: u64) -> Vec<(&'a str, f64)> {
     let mut paths: BTreeMap<&str, Vec<&Said<'_>>> = BTreeMap::new();
     for (_, said) in items {

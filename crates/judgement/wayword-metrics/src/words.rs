@@ -1,12 +1,12 @@
-//! Which words two texts share: similarity without a model.
+//! A text encoder without a model: it counts words, so texts are similar if they share words.
 
 use wayword_core::{ModelError, TextEncoder, seed};
 
 /// How many slots words are hashed to.
 const PLACES: u64 = 1024;
 
-/// Hashed counts of words, without a model. Texts that say the same in other words are far apart, so its figures are
-/// not those of a sentence encoder and can only be compared with each other.
+/// Encodes a text as counts of hashed words. Paraphrases in other words come out far apart, so its figures are comparable with each
+/// other, but not with those of a sentence encoder.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Words;
 
@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn words_count_and_nothing_else_does() {
+    fn only_words_count_in_the_vector() {
         assert!((alike("Go to the sink.", "to the SINK go") - 1.0).abs() < 1e-6);
         assert!((alike("open the door", "open a window") - 1.0 / 3.0).abs() < 1e-6);
         assert_eq!(alike("open", "close"), 0.0);

@@ -1,14 +1,15 @@
-//! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` has them: over the corpus, with the closest reference length.
+//! BLEU-1 to BLEU-4 as `pycocoevalcap`'s `bleu_scorer.py` computes them: the share of a text's n-grams that a reference has too,
+//! over the whole corpus, less if the text is shorter than the reference closest in length.
 
 use super::text::{ORDERS, Text};
 use std::ops::{Add, AddAssign};
 
-/// Keeps quotients of nothing from failing, as in the reference.
+/// Added to denominators so that none is zero, as `pycocoevalcap` does.
 const SMALL: f64 = 1e-9;
-/// The same in a numerator.
+/// Added to numerators so that no product is zero, as `pycocoevalcap` does.
 const TINY: f64 = 1e-15;
 
-/// What BLEU counts. Counts of several texts are added, and then divided.
+/// The counts that BLEU divides. For a corpus, the counts of all texts are added first.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Counts {
     /// N-grams that a reference has too, by their length.
@@ -17,7 +18,7 @@ pub struct Counts {
     pub guessed: [u64; ORDERS],
     /// Words.
     pub words: u64,
-    /// Words of the reference whose length is closest.
+    /// Words of the reference that is closest in length.
     pub reference: u64,
 }
 
@@ -38,7 +39,7 @@ impl Counts {
         }
     }
 
-    /// BLEU-1 to BLEU-4 of what was counted.
+    /// BLEU-1 to BLEU-4 of these counts.
     #[must_use]
     pub fn bleu(&self) -> [f64; ORDERS] {
         let ratio = (self.words as f64 + TINY) / (self.reference as f64 + SMALL);
@@ -51,7 +52,7 @@ impl Counts {
     }
 }
 
-/// For each n-gram of a text, how often the reference has it that has it most often.
+/// For each n-gram of a text, its highest count in any one reference.
 fn most_in(text: &Text, references: &[&Text]) -> Vec<u32> {
     let mut most = vec![0; text.grams().len()];
     for reference in references {

@@ -1,4 +1,5 @@
-//! CIDEr-D as `pycocoevalcap`'s `cider_scorer.py` has it, where it is called CIDEr.
+//! CIDEr-D as `pycocoevalcap`'s `cider_scorer.py` computes it (under the name CIDEr): the cosine of two texts' n-gram counts,
+//! with weights that make n-grams count more if few items' references have them.
 
 use super::text::{Gram, ORDERS, Text};
 use std::{
@@ -6,16 +7,17 @@ use std::{
     hash::{BuildHasherDefault, Hasher},
 };
 
-/// Standard deviation of the penalty for other lengths.
+/// Standard deviation of the Gaussian penalty for a difference in length, words.
 const SIGMA: f64 = 6.0;
 /// Scores are ten times a cosine.
 const SCALE: f64 = 10.0;
 
-/// In how many items' references each n-gram occurs.
+/// For each n-gram, the number of items with a reference that contains it.
 #[derive(Debug, Default)]
 struct Occurrences(HashMap<u128, u32, BuildHasherDefault<Mixed>>);
 
-/// Mixes a key by two products: the keys are numbers that nobody chooses to collide.
+/// Hashes the key of an n-gram by two multiplications. That is fast, and safe enough: keys come from our own numbering of words,
+/// so an attacker cannot choose keys that collide.
 #[derive(Debug, Default)]
 struct Mixed(u64);
 
@@ -55,7 +57,7 @@ impl Occurrences {
             weight
         };
         let weights = text.grams().iter().map(weight).collect();
-        // The reference counts pairs of words where it means words.
+        // `pycocoevalcap` counts pairs of words here where it should count words; we do the same.
         let length = text.len().saturating_sub(1) as f64;
         Weighed { grams: text.grams(), weights, norms: squares.map(f64::sqrt), length }
     }
@@ -69,7 +71,7 @@ struct Weighed<'a> {
 }
 
 impl Weighed<'_> {
-    /// The sum over lengths of n-grams of the clipped cosines, less for another length.
+    /// The sum over the lengths of n-grams of the clipped cosines, times the penalty for a difference in length.
     fn like(&self, reference: &Self) -> f64 {
         let mut products = [0.0; ORDERS];
         let mut there = reference.grams.iter().zip(&reference.weights).peekable();

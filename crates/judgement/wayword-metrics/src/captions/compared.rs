@@ -1,4 +1,5 @@
-//! A set of texts against people's, beside the two anchors without which a figure says nothing.
+//! Compares a set of texts with people's texts. BLEU and its like have no meaning by themselves, so the same figures are
+//! computed for two anchors: another person's text about the item, and a person's text about another path.
 
 use super::{Counts, Row, Scores, Text, scores};
 use crate::{Drawing, Estimate, bootstrap::interval_of};
@@ -7,10 +8,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use wayword_core::rng;
 
-/// What is said about one item.
+/// The texts about one item.
 #[derive(Debug, Clone)]
 pub struct Described<'a> {
-    /// The item's id: what is drawn for it depends on nothing else.
+    /// The item's id. Draws for the item depend only on it and the seed.
     pub id: &'a str,
     /// The path that it is about: items of one path are not independent.
     pub cluster: &'a str,
@@ -34,11 +35,11 @@ pub struct Figures {
     pub cider_d: Estimate,
 }
 
-/// A set of texts beside the two anchors. All but the first are against the same references, people's texts without the
-/// first of each item, over the items that have two or more, so that these three can be compared.
+/// Figures of a set of texts and of the two anchors. `rest`, `person` and `other_path` can be compared with each other: all three
+/// use the items with at least two references, and each item's references without the first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Anchored {
-    /// The texts against all references: what papers print.
+    /// The texts against all references, as papers report it.
     pub all: Option<Figures>,
     /// The texts against all references but the first.
     pub rest: Option<Figures>,
@@ -51,7 +52,7 @@ pub struct Anchored {
     pub single: usize,
 }
 
-/// The texts of items, and of the anchors, each with the references that it is held against.
+/// The texts of all items and of the anchors, each with the references that it is compared with.
 #[derive(Debug, Clone)]
 pub struct Sets<'a> {
     /// The texts against all references.
@@ -135,7 +136,7 @@ pub fn elsewhere(items: &[(&str, &str)], seed: u64) -> Option<Vec<usize>> {
     items.iter().map(draw).collect()
 }
 
-/// What the texts of one path sum up to.
+/// Sums over the texts of one path.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     counts: Counts,

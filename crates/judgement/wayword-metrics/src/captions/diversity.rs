@@ -44,7 +44,8 @@ pub fn diversity(texts: &[(&str, &Text)], seed: u64) -> Diversity {
     }
 }
 
-/// The two texts that have an n-gram most often: the second counts for the first.
+/// The two highest counts of an n-gram in any text, and which text has the highest. A text is compared with all others, so for the
+/// owner of the highest count the second highest is used.
 #[derive(Debug, Clone, Copy, Default)]
 struct Most {
     first: u32,
@@ -80,7 +81,7 @@ fn self_bleu_4(texts: &[&Text]) -> Option<f64> {
     (texts.len() > 1).then(|| scores.iter().sum::<f64>() / scores.len() as f64)
 }
 
-/// The length of another text that is closest; the shorter one of two.
+/// The closest length among the other texts; of two equally close ones the shorter.
 fn closest(lengths: &BTreeMap<usize, usize>, length: usize) -> usize {
     let shared = lengths.get(&length).is_some_and(|count| *count > 1);
     let below = lengths.range(..length).next_back();
@@ -198,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_measured_is_none() {
+    fn diversity_is_none_for_too_few_texts() {
         let nothing = diversity(&[], 0);
         assert_eq!((nothing.self_bleu_4, nothing.mattr_50, nothing.homogenisation), (None, None, None));
         assert_eq!(of(&["alone"]).self_bleu_4, None);

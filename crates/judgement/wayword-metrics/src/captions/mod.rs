@@ -1,8 +1,8 @@
-//! Figures that compare a text with people's texts, as the field's papers print them: BLEU, ROUGE-L and CIDEr-D, and how
-//! diverse texts are.
+//! The usual figures that compare a text with people's texts: BLEU, ROUGE-L and CIDEr-D. Also measures how diverse a set of
+//! texts is.
 //!
-//! All are those of `pycocoevalcap` to the last digits that it prints. A figure needs its protocol: which tokens
-//! ([`ptb`] or [`split`]), which texts are the references of which, and whether texts were cut off.
+//! All figures equal those of `pycocoevalcap` to the last digit that it prints. A figure can only be compared with others of
+//! the same protocol: the tokens ([`ptb`] or [`split`]), the references, and whether texts were cut off.
 
 mod bleu;
 mod cider;
@@ -22,19 +22,19 @@ pub use rouge::rouge_l;
 pub use split::split;
 pub use text::{Text, Vocabulary};
 
-/// A text and the references that it is held against.
+/// A text and the references that it is compared with.
 #[derive(Debug, Clone)]
 pub struct Row<'a> {
     /// The text.
     pub text: &'a Text,
-    /// What people said of the same; at least one.
+    /// People's texts about the same item; at least one.
     pub references: Vec<&'a Text>,
 }
 
 /// The figures of one text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scores {
-    /// What BLEU counts: [`Counts::bleu`] of one text's counts is its own BLEU, that of their sum the corpus's.
+    /// The counts for BLEU. [`Counts::bleu`] gives the text's own BLEU; of the sum of several counts it gives the corpus's BLEU.
     pub counts: Counts,
     /// ROUGE-L.
     pub rouge_l: f64,

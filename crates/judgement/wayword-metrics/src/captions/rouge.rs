@@ -1,4 +1,4 @@
-//! ROUGE-L as `pycocoevalcap`'s `rouge.py` has it.
+//! ROUGE-L as `pycocoevalcap`'s `rouge.py` computes it: how long a common subsequence of words a text has with a reference.
 
 use super::text::Text;
 
@@ -21,7 +21,7 @@ pub fn rouge_l(text: &Text, references: &[&Text]) -> f64 {
     (1.0 + BETA * BETA) * precision * recall / (recall + BETA * BETA * precision)
 }
 
-/// How long the longest common subsequence is. `row` is memory that may be used again.
+/// The length of the longest common subsequence. `row` is a buffer that the caller reuses.
 fn longest_common(a: &[u32], b: &[u32], row: &mut Vec<u32>) -> u32 {
     row.clear();
     row.resize(b.len(), 0);

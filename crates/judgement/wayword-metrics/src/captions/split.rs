@@ -1,7 +1,7 @@
-//! Tokens as EnvDrop's `split_sentence` has them, which LANA and SAS score with: punctuation marks are tokens too.
+//! The tokenizer of EnvDrop (`split_sentence`), with which LANA and SAS compute their scores: punctuation marks are tokens too.
 
-/// Takes a text apart into small words and what stands between them. A run of punctuation marks is taken apart into its
-/// marks, unless they are all full stops.
+/// Splits a text into words in lower case and the marks between them. A run of punctuation marks is split into single marks, unless
+/// all are full stops.
 #[must_use]
 pub fn split(text: &str) -> Vec<String> {
     let text = super::collapsed(text);
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_tokens() {
+    fn split_gives_no_tokens_for_an_empty_text() {
         assert!(split(" \n ").is_empty());
     }
 }

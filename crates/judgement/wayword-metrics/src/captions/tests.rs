@@ -54,7 +54,7 @@ fn anchors_are_over_the_same_references() {
     let mut vocabulary = Vocabulary::default();
     let mut text = |said: String| vocabulary.text(&ptb(&said));
     let mut of = |n: usize| {
-        // The judged text is word for word what the second person says, the first person says half of it.
+        // The judged text equals the second person's; the first person's text is half of it.
         let said = format!("walk{n} past door{n} up stairs{n} to sofa{n} then");
         vec![text(said.clone()), text(format!("walk{n} past door{n} and stop there")), text(said)]
     };
@@ -69,7 +69,7 @@ fn anchors_are_over_the_same_references() {
 }
 
 #[test]
-fn where_there_is_nothing_to_compare_there_is_no_figure() {
+fn anchored_is_none_without_texts_or_other_paths() {
     let ids = ["a".to_owned()];
     let alone = vec![texts(&["go up", "go down"])];
     let found = anchored(&Sets::of(&described(&ids, &alone), DRAWING.seed), &DRAWING);

@@ -1,14 +1,14 @@
-//! Texts as numbers, so that the scores compare no strings.
+//! Texts with words replaced by numbers, so that the scores compare numbers instead of strings.
 
 use std::collections::HashMap;
 
-/// The word that `"".split(" ")` has in Python: ROUGE-L takes a text without tokens for it.
+/// The number of the empty word. In Python, `"".split(" ")` gives one empty word, so ROUGE-L sees it in a text without tokens.
 const NOTHING: u32 = 0;
 
 /// Longest n-grams that the scores count.
 pub(super) const ORDERS: usize = 4;
 
-/// Bits of a word's number. Four of them and two bits for the length of the n-gram fit into 128.
+/// Bits of a word's number. Four numbers and two bits for the length of the n-gram fit into 128 bits.
 const BITS: u32 = 30;
 
 /// Numbers of words.
@@ -17,12 +17,12 @@ pub struct Vocabulary {
     numbers: HashMap<String, u32>,
 }
 
-/// A text whose tokens are numbers.
+/// A text as the numbers of its tokens, with its n-grams counted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
-    /// What BLEU, CIDEr-D and the figures of diversity count.
+    /// The words that BLEU, CIDEr-D and the figures of diversity count.
     words: Vec<u32>,
-    /// What ROUGE-L counts, where it is not the same.
+    /// The words that ROUGE-L counts; `None` where they are the same.
     pieces: Option<Vec<u32>>,
     grams: Vec<Gram>,
 }
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_no_break_space_parts_words_and_not_pieces() {
+    fn a_no_break_space_separates_words_but_not_pieces() {
         let text = Vocabulary::default().text(&["the", "1\u{a0}1/2"]);
         assert_eq!((text.words().len(), text.pieces().len()), (3, 2));
     }

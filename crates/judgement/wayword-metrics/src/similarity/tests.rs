@@ -1,4 +1,4 @@
-//! What the figure does whatever the texts are.
+//! Tests of the similarity of sets: small examples, and properties that hold for any texts.
 
 use super::*;
 use proptest::prelude::*;
@@ -34,7 +34,7 @@ fn item<const N: usize>(id: u8, vectors: [[f32; 2]; N]) -> (u8, u8, Vec<Vec<f32>
 #[test]
 fn an_item_is_the_mean_of_its_pairs_and_the_set_the_mean_of_its_items() {
     let a = vec![item(1, [EAST]), item(2, [EAST])];
-    // Item 1: three of four texts agree; item 2: none of one does.
+    // Item 1: three of its four pairs of texts agree. Item 2: its only pair does not.
     let b = vec![item(1, [EAST, EAST, EAST, NORTH]), item(2, [NORTH])];
     let found = similarity(&set(&a), &set(&b), &DRAWING);
     assert!(near(mean_of(found.figure), (0.75 + 0.0) / 2.0));
@@ -46,7 +46,7 @@ fn an_item_is_the_mean_of_its_pairs_and_the_set_the_mean_of_its_items() {
 }
 
 #[test]
-fn what_one_side_alone_has_is_counted_and_left_out() {
+fn similarity_counts_and_leaves_out_items_of_one_side() {
     let a = vec![item(1, [EAST]), item(2, [EAST]), item(3, [])];
     let b = vec![item(2, [EAST]), item(3, [EAST]), item(4, [EAST])];
     let found = similarity(&set(&a), &set(&b), &DRAWING);
@@ -54,7 +54,7 @@ fn what_one_side_alone_has_is_counted_and_left_out() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_not() {
+fn similarity_is_none_without_common_items_or_pairs() {
     let of = |id| vec![item(id, [EAST])];
     let apart = similarity(&set(&of(1)), &set(&of(2)), &DRAWING);
     assert_eq!((apart.figure, apart.same_item, apart.random_pairs), (None, None, None));
@@ -64,7 +64,7 @@ fn what_cannot_be_measured_is_not() {
 
 #[test]
 fn random_pairs_never_lie_on_one_path() {
-    // Within a path all is alike, between paths nothing is.
+    // Texts about one path have a cosine of 1, texts about different paths one of 0.
     let axis = |at: usize| (0..4).map(|other| if other == at { 1.0 } else { 0.0 }).collect::<Vec<f32>>();
     let items: Items = (0..12).map(|id| (id, id % 4, vec![axis(usize::from(id % 4))])).collect();
     let found = similarity(&set(&items), &set(&items), &DRAWING);
@@ -82,7 +82,7 @@ fn items() -> impl Strategy<Value = Items> {
 
 proptest! {
     #[test]
-    fn it_is_symmetric(a in items(), b in items()) {
+    fn similarity_figure_is_symmetric(a in items(), b in items()) {
         let (ab, ba) = (similarity(&set(&a), &set(&b), &DRAWING), similarity(&set(&b), &set(&a), &DRAWING));
         prop_assert_eq!(ab.figure.is_some(), ba.figure.is_some());
         if let (Some(ab), Some(ba)) = (ab.figure, ba.figure) {

@@ -1,31 +1,32 @@
-//! How far persons agree about items: Krippendorff's alpha.
+//! Krippendorff's alpha: how far persons agree about items, beyond chance. It is 1 minus the observed disagreement within items
+//! over the disagreement that random pairs of answers would have.
 
 use super::{Answer, Interval, is_level, quantile};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What answers mean, and so how far two of them are apart.
+/// The scale of the answers, which defines the distance between two of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
     /// Names: two answers are the same or not.
     Nominal,
-    /// Levels in an order: apart by how many answers lie between them.
+    /// Ordered levels: the distance depends on how many answers lie between them.
     Ordinal,
-    /// Numbers: apart by the square of their difference.
+    /// Numbers: the distance is the square of their difference.
     Interval,
 }
 
 /// Krippendorff's alpha with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
-    /// 1 where all agree, 0 where they agree as chance has it.
+    /// 1 if all agree, 0 if they agree only as often as chance would make them.
     pub alpha: f64,
-    /// Its interval; none where leaving out a person or an item never changes it.
+    /// Its interval; `None` where leaving out a person or an item never changes alpha.
     pub interval: Option<Interval>,
     /// Its standard error, where it is above 0.
     pub se: Option<f64>,
-    /// What the answers mean.
+    /// The scale of the answers.
     pub scale: Scale,
     /// Answers to items that have at least two.
     pub answers: usize,
@@ -40,7 +41,8 @@ pub struct Agreement {
 ///
 /// The variance is a jackknife's: that over items left out, and as much as that over persons left out exceeds that over
 /// single answers left out. The interval is Student's for the logarithm of 1 - alpha, with one degree of freedom less than there
-/// are persons or items. A bootstrap over items, which is usual, covers too rarely: it knows nothing of other persons.
+/// are persons or items, whichever are fewer. The usual bootstrap over items gives intervals that are too narrow, because it ignores
+/// that other persons would answer differently.
 ///
 /// `None` where no item has two answers, where all answers are the same, where a value is not finite, and where the level is
 /// not between 0 and 1.
@@ -103,14 +105,14 @@ impl Ratings {
         }
     }
 
-    /// The standard error by the jackknife; `None` where too few ways of leaving out leave an alpha.
+    /// The standard error by the jackknife; `None` if too few of the reduced sets of answers have an alpha.
     fn se(&self) -> Option<f64> {
         let single: Vec<Vec<Place>> = self.answers.iter().map(|place| vec![*place]).collect();
         let [item, person, answer] = [&self.by_item, &self.by_person, &single].map(|groups| self.jackknife(groups));
         Some((item? + (person? - answer?).max(0.0)).sqrt())
     }
 
-    /// The variance of alpha over groups of answers that are left out in turn.
+    /// The jackknife variance of alpha: each group of answers is left out in turn.
     fn jackknife(&self, groups: &[Vec<Place>]) -> Option<f64> {
         let alphas: Vec<f64> = groups.iter().filter_map(|group| self.alpha_without(group)).collect();
         let count = alphas.len() as f64;
@@ -139,8 +141,8 @@ impl Ratings {
         (expected > 0.0).then(|| 1.0 - observed / expected)
     }
 
-    /// Where each value lies, so that two are apart by the square of the difference. In an order, that is the number of
-    /// answers below the value and half of those that have it.
+    /// A coordinate for each level, such that the squared difference of two coordinates is their distance. On an ordinal scale
+    /// this is the number of answers below the level plus half of those at it.
     fn places(&self, totals: &[f64]) -> Vec<f64> {
         if self.scale != Scale::Ordinal {
             return self.levels.clone();
@@ -208,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn those_who_agree_have_alpha_1() {
+    fn alpha_is_one_for_full_agreement() {
         let all: Vec<Answer<u8, u8>> =
             (0..20).map(|n| Answer { person: n % 2, item: n / 2, value: f64::from(n / 2 % 3) }).collect();
         for scale in [Scale::Nominal, Scale::Ordinal, Scale::Interval] {
@@ -218,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_compared_has_no_alpha() {
+    fn alpha_is_none_without_answers_to_compare() {
         let of = |value: fn(u8) -> f64, per_item: u8| -> Vec<Answer<u8, u8>> {
             (0..20).map(|n| Answer { person: n, item: n / per_item, value: value(n) }).collect()
         };

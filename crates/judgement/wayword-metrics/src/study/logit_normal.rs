@@ -1,6 +1,7 @@
-//! Shares over persons and items who differ on the logit scale.
+//! Mean shares over persons and items that differ on the logit scale, ln(p / (1 - p)). A normal distribution of logits models how
+//! persons differ in skill and items in difficulty.
 
-/// The mean share where the logit varies normally around `logit` with standard deviation `sd`.
+/// The mean share if the logit is normally distributed around `logit` with standard deviation `sd`.
 ///
 /// The trapezoid rule over ±9 standard deviations; for a smooth function that falls off as the normal density does, its
 /// error is far below 1e-12.
@@ -23,7 +24,7 @@ pub(super) fn over(mean: f64, sd: f64, of: impl Fn(f64) -> f64) -> f64 {
     sum / weights
 }
 
-/// The logit whose mean share, with standard deviation `sd`, is `share`; by bisection.
+/// The inverse of [`mean_share`]: the logit for which the mean share, with standard deviation `sd`, is `share`; by bisection.
 pub(super) fn centre(share: f64, sd: f64) -> f64 {
     let (mut low, mut high) = (-60.0, 60.0);
     for _ in 0..100 {

@@ -1,7 +1,7 @@
-//! The figures of a study with people: shares, means, agreement and preferences of persons over items, with intervals.
+//! The statistics of a study with people: shares, means, agreement and preferences of persons over items, with intervals.
 //!
-//! Persons and items are both samples: a figure should hold for other persons and other items. So answers of one person are
-//! not independent, and neither are answers to one item.
+//! Persons and items are both samples: a figure should hold for other persons and other items. Answers of one person are not
+//! independent, and neither are answers to one item, so the intervals cluster by both.
 
 mod agreement;
 mod bradley_terry;
@@ -19,7 +19,7 @@ pub use power::{Detectable, Plan, detectable};
 use serde::{Deserialize, Serialize};
 pub use share::wilson;
 
-/// What one person gave for one item.
+/// One person's answer to one item.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Answer<P, I> {
     /// The person.

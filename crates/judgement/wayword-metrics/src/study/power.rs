@@ -1,4 +1,4 @@
-//! What a planned study can detect.
+//! Power analysis: the smallest difference between two conditions that a planned study can detect.
 
 use super::{logit_normal, mean_share, quantile};
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ pub struct Detectable {
     pub difference: f64,
     /// Answers in each condition.
     pub answers_per_condition: f64,
-    /// By how much the variance exceeds that of independent answers; below 1 where what persons and items do cancels.
+    /// The factor by which the variance exceeds that of independent answers; below 1 where effects of persons and items cancel.
     pub design_effect: f64,
 }
 
@@ -43,11 +43,11 @@ pub struct Detectable {
 /// d = (z_significance √(2 m (1 - m)) + z_power √(p (1 - p) + q (1 - q))) / √n,   p, q = m ± d / 2
 /// ```
 ///
-/// for shares whose mean is m. Otherwise n is divided by the design effect (Kish 1965)
+/// for two shares with the mean m. Otherwise n is divided by the design effect (Kish 1965)
 /// `1 + (a - 1) person + (b - 1) item`, where a and b are the answers of one person and to one item within a condition, and
-/// `person` and `item` the correlations of two answers of one person and to one item at that mean. What persons or items
-/// do to both conditions cancels from the difference, so there `a - 1` or `b - 1` becomes -1. `None` where no difference has
-/// that power, and for plans that cannot be.
+/// `person` and `item` the correlations of two answers of one person and to one item at that mean. If persons (or items) take part
+/// in both conditions, their effects cancel from the difference, and `a - 1` (or `b - 1`) becomes -1. `None` where no difference
+/// has that power, and for impossible plans.
 #[must_use]
 pub fn detectable(plan: &Plan, power: f64, significance: f64) -> Option<Detectable> {
     let answers_per_condition = (plan.persons * plan.answers_per_person) as f64 / 2.0;
@@ -64,7 +64,7 @@ pub fn detectable(plan: &Plan, power: f64, significance: f64) -> Option<Detectab
     Some(Detectable { difference, answers_per_condition, design_effect })
 }
 
-/// Beyond this a person says nearly always the same.
+/// Largest standard deviation of logits that is accepted. Beyond it a person gives nearly always the same answer.
 const MOST_SD: f64 = 10.0;
 
 fn design_effect(plan: &Plan, answers: f64) -> f64 {
@@ -78,8 +78,8 @@ fn design_effect(plan: &Plan, answers: f64) -> f64 {
 
 /// The correlations of two answers of one person, and of two answers to one item.
 ///
-/// Two answers share a part of their logit, with this part's variance; the rest differs. So their correlation is the
-/// variance, over that part, of the share that is expected given it, by p (1 - p).
+/// Two answers of one person share the person's part of the logit and differ in the rest. Their covariance is the variance, over
+/// the shared part, of the expected share given that part. Divided by p (1 - p) it is their correlation.
 fn correlations(plan: &Plan) -> [f64; 2] {
     let all = plan.person_sd.hypot(plan.item_sd);
     let centre = logit_normal::centre(plan.base_share, all);
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn plans_that_cannot_be_detect_nothing() {
+    fn detectable_is_none_for_impossible_plans() {
         for plan in [
             Plan { persons: 0, ..PLAN },
             Plan { items: 0, ..PLAN },

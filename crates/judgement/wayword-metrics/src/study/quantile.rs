@@ -1,4 +1,4 @@
-//! Quantiles of the normal and of Student's distribution.
+//! Quantiles of the normal and of Student's t distribution, from which intervals get their width.
 
 /// The standard normal quantile, by Wichura's algorithm AS 241 (PPND16, Applied Statistics 37, 1988): accurate to about
 /// sixteen digits. Infinite at 0 and 1, and not a number beyond them.
@@ -17,10 +17,10 @@ pub(super) fn normal(share: f64) -> f64 {
     (polynomial(&of.0, r) / polynomial(&of.1, r)).copysign(from_half)
 }
 
-/// The quantile of Student's distribution, for a share from 0.5 up; `None` below, at 1, and without a degree of freedom.
+/// The quantile of Student's distribution, for a share from 0.5 to below 1; `None` for other shares and for 0 degrees of freedom.
 ///
-/// Newton's iteration on the distribution function, which is an incomplete beta function (Abramowitz and Stegun 26.7.1), kept
-/// between bounds that always hold the answer.
+/// It solves for the quantile by Newton's iteration on the distribution function, an incomplete beta function (Abramowitz and
+/// Stegun 26.7.1). Steps that would leave the bounds known to contain the answer are replaced by bisection.
 pub(super) fn student(share: f64, degrees: usize) -> Option<f64> {
     let tail = 1.0 - share;
     if degrees == 0 || !(tail > 0.0 && tail <= 0.5) {
@@ -52,7 +52,7 @@ pub(super) fn student(share: f64, degrees: usize) -> Option<f64> {
     Some(at)
 }
 
-/// Beyond this many degrees of freedom the quantile no longer differs from the normal one in the digits that are shown.
+/// Beyond this many degrees of freedom the quantile equals the normal one in all digits that reports show.
 const MOST_DEGREES: usize = 1_000_000;
 const MOST_STEPS: usize = 200;
 
@@ -78,7 +78,7 @@ impl Student {
         power.exp() / (self.degrees.sqrt() * self.beta)
     }
 
-    /// The chance of more than `t`, for `t` of at least 0.
+    /// The probability of a value above `t`, for `t` of at least 0.
     fn tail(&self, t: f64) -> f64 {
         let (a, b) = (self.degrees / 2.0, 0.5);
         let square = t * t;
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_quantile_has_none() {
+    fn student_quantile_is_none_outside_its_range() {
         assert_eq!(student(0.975, 0), None);
         assert_eq!(student(1.0, 3), None);
         assert_eq!(student(0.4, 3), None);

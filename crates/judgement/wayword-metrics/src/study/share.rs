@@ -1,11 +1,12 @@
-//! The interval of a share of independent answers.
+//! Wilson's interval of a share of independent answers. Unlike the textbook interval it stays within 0 and 1 and is right for few
+//! answers and for shares near 0 or 1.
 
 use super::{Interval, is_level, quantile};
 
 /// Wilson's score interval of a share (Wilson 1927; without a correction for continuity).
 ///
-/// Counts may be fractions, as where the number of answers is an effective one. `None` where there are no answers, more
-/// successes than answers, or no level between 0 and 1.
+/// Counts may be fractions, because the number of answers can be an effective number. `None` if there are no answers, more
+/// successes than answers, or the level is not between 0 and 1.
 #[must_use]
 pub fn wilson(successes: f64, answers: f64, level: f64) -> Option<Interval> {
     let is_count = answers > 0.0 && answers.is_finite() && (0.0..=answers).contains(&successes);
@@ -16,7 +17,7 @@ pub fn wilson(successes: f64, answers: f64, level: f64) -> Option<Interval> {
         let centre = (share + z * z / (2.0 * answers)) / shrink;
         let spread = (share * (1.0 - share) / answers + z * z / (4.0 * answers * answers)).sqrt();
         let half = z * spread / shrink;
-        // At 0 and 1 the end is exact; rounding would leave it a digit away.
+        // For shares of 0 and 1 the end is exactly 0 or 1; rounding would give a slightly different number.
         let low = if successes == 0.0 { 0.0 } else { (centre - half).max(0.0) };
         let high = if successes == answers { 1.0 } else { (centre + half).min(1.0) };
         Interval { low, high }
@@ -42,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_that_cannot_be_have_no_interval() {
+    fn wilson_is_none_for_impossible_counts() {
         for (successes, answers, level) in
             [(0.0, 0.0, 0.95), (3.0, 2.0, 0.95), (-1.0, 2.0, 0.95), (1.0, 2.0, 1.0), (f64::NAN, 2.0, 0.5)]
         {

@@ -1,4 +1,4 @@
-//! The distances of a platform's scenes.
+//! A cache of the distances in a platform's scenes.
 
 use super::Distances;
 use std::{
@@ -8,14 +8,14 @@ use std::{
 };
 use wayword_core::{Platform, PlatformError, SceneId};
 
-/// Distances of scenes, each computed when it is first asked for and kept. Threads may share it.
+/// Caches the distances of scenes. Those of a scene are computed at the first request. Threads may share the cache.
 pub struct Atlas<'a> {
     platform: &'a dyn Platform,
     scenes: Mutex<BTreeMap<SceneId, Arc<Distances>>>,
 }
 
 impl<'a> Atlas<'a> {
-    /// An atlas that knows no scene yet.
+    /// An empty cache.
     #[must_use]
     pub fn new(platform: &'a dyn Platform) -> Self {
         Self { platform, scenes: Mutex::default() }
@@ -29,7 +29,7 @@ impl<'a> Atlas<'a> {
         if let Some(known) = self.scenes().get(scene) {
             return Ok(Arc::clone(known));
         }
-        // The lock is not held meanwhile, so that other threads can look up known scenes.
+        // Computed without the lock, so that other threads can look up known scenes meanwhile.
         let computed = Arc::new(Distances::new(&*self.platform.graph(scene)?));
         Ok(Arc::clone(self.scenes().entry(scene.clone()).or_insert(computed)))
     }

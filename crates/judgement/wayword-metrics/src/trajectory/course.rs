@@ -1,4 +1,5 @@
-//! An episode that many trajectories are scored by.
+//! Scores many trajectories by one episode. Everything that does not depend on the trajectory, as the length of the shortest path, is
+//! computed once.
 
 use super::{
     Demand, Distances, Grounding, Outcome, Score,
@@ -8,10 +9,10 @@ use super::{
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
 
-/// Nearer to the goal than this, strictly, is a success (R2R, `tasks/R2R/eval.py`, `error_margin`).
+/// A trajectory that ends strictly nearer to the goal than this is a success (R2R, `tasks/R2R/eval.py`, `error_margin`).
 const SUCCESS_M: f64 = 3.0;
 
-/// A demand for many trajectories: everything that no trajectory changes is looked up once.
+/// An episode's demand, prepared for scoring many trajectories.
 #[derive(Debug, Clone)]
 pub struct Course {
     start: usize,
@@ -26,7 +27,7 @@ pub struct Course {
 }
 
 impl Course {
-    /// The course of a demand over the distances of its scene.
+    /// Prepares a demand. `distances` are those of its scene.
     ///
     /// # Errors
     /// Each problem of the annotated path.
@@ -48,8 +49,8 @@ impl Course {
         })
     }
 
-    /// The figures of a trajectory, as [`score`](super::score) gives them: its viewpoints and the object that the agent names. `distances`
-    /// are those that the course was made with.
+    /// The figures of a trajectory, as [`score`](super::score) gives them. `names` are its viewpoints, `object` is the object that
+    /// the agent names, and `distances` must be those that were given to [`Course::new`].
     ///
     /// # Errors
     /// Each problem of the trajectory.

@@ -1,4 +1,4 @@
-//! How far it is from every viewpoint of a scene to every other.
+//! All shortest distances between the viewpoints of a scene.
 
 use super::places::Places;
 use std::{cmp::Ordering, collections::BinaryHeap};
@@ -37,13 +37,13 @@ impl Distances {
         metres.is_finite().then_some(metres)
     }
 
-    /// Whether the scene has such a viewpoint.
+    /// Whether the scene has this viewpoint.
     #[must_use]
     pub fn has(&self, viewpoint: &ViewpointId) -> bool {
         self.place(viewpoint.as_str()).is_some()
     }
 
-    /// Whether an edge joins two viewpoints. None joins a viewpoint to itself.
+    /// Whether an edge joins two viewpoints. No edge joins a viewpoint to itself.
     #[must_use]
     pub fn has_edge(&self, a: &ViewpointId, b: &ViewpointId) -> bool {
         let ends = self.place(a.as_str()).zip(self.place(b.as_str()));
@@ -70,7 +70,7 @@ impl Distances {
     }
 }
 
-/// The edges of all places in one row: those of place `n` are from `first[n]` to `first[n + 1]`.
+/// The edges of all places in one vector, grouped by place: those of place `n` are from `first[n]` to `first[n + 1]`.
 #[derive(Debug, Clone)]
 struct Roads {
     first: Vec<usize>,
@@ -79,7 +79,7 @@ struct Roads {
 }
 
 impl Roads {
-    /// An edge of infinite length is left out, because sums over it would mean nothing.
+    /// Collects the edges of a graph. Edges of infinite length are left out, because sums over them would be meaningless.
     fn new(graph: &ViewpointGraph, places: &Places) -> Self {
         let mut ends: Vec<(usize, usize, f64)> = graph
             .edges()
@@ -116,7 +116,8 @@ impl Roads {
     }
 }
 
-/// A place on the frontier; the nearest is the greatest, because a heap pops its greatest.
+/// An entry of Dijkstra's priority queue. The order is reversed, because `BinaryHeap` pops its greatest element and the nearest place
+/// must come first.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     metres: f64,
@@ -158,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_reached_or_is_not_there_has_no_distance() {
+    fn metres_is_none_for_unreachable_and_unknown_viewpoints() {
         let parts = Distances::new(&graph(&[[0.0, 0.0], [1.0, 0.0], [9.0, 9.0]], &[(0, 1)]));
         assert_eq!(parts.metres(&id(0), &id(2)), None);
         assert_eq!(parts.metres(&id(0), &id(7)), None);
@@ -167,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_too_long_for_a_number_is_none() {
+    fn edges_of_infinite_length_are_left_out() {
         let far = Distances::new(&graph(&[[-1e300, 0.0], [1e300, 0.0]], &[(0, 1)]));
         assert!(!far.has_edge(&id(0), &id(1)));
     }

@@ -1,12 +1,12 @@
-//! How closely a trajectory keeps to the annotated path.
+//! How closely a trajectory follows the annotated path: nDTW and CLS.
 
 use super::Distances;
 
 /// The scale for distances from the path, metres: `threshold` in VLN-DUET's `map_nav_src/r2r/eval_utils.py`.
 const THRESHOLD_M: f64 = 3.0;
 
-/// The distance of each viewpoint of a trajectory to each of the annotated path. All figures except lengths are
-/// computed from these.
+/// The matrix of distances between the viewpoints of a trajectory (rows) and of the annotated path (columns). All figures except
+/// lengths are computed from it.
 pub(super) struct Apart {
     /// Metres, infinite where there is no way; a row for each viewpoint of the trajectory.
     metres: Vec<f64>,
@@ -34,8 +34,8 @@ impl Apart {
 
     /// Normalised dynamic time warping (Ilharco et al. 2019, arXiv 1907.05446).
     pub(super) fn ndtw(&self) -> f64 {
-        // The least cost of warping the viewpoints so far onto each beginning of the path. The empty beginning comes
-        // first.
+        // `costs[n]` is the least cost of aligning the viewpoints so far with the first n + 1 of the path. `before_all` is the
+        // cost of aligning them with none: 0 at first, impossible after the first viewpoint.
         let mut costs = vec![f64::INFINITY; self.on_path];
         let mut before_all = 0.0;
         for row in self.rows() {
@@ -67,7 +67,8 @@ impl Apart {
     }
 }
 
-/// The lesser of two distances. They are never NaN; without a check for that it is one instruction instead of three.
+/// The lesser of two distances. Unlike `f64::min` it does not handle NaN, which distances never are; so it compiles to one
+/// instruction instead of three.
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }

@@ -1,9 +1,9 @@
-//! What keeps a trajectory from being scored.
+//! Checks a trajectory and its episode, and lists every problem that makes scoring impossible.
 
 use super::{Demand, Distances, Trajectory};
 use wayword_core::ViewpointId;
 
-/// A problem of a trajectory, or of its demand, that keeps it from being scored. Steps count from 0, the start.
+/// A problem of a trajectory or of its episode that makes scoring impossible. Steps count from 0, the start.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Invalid {
     /// It holds no viewpoint.
@@ -54,7 +54,7 @@ pub enum Invalid {
     },
 }
 
-/// All that keeps a trajectory from being scored; empty where nothing does.
+/// All problems that make it impossible to score a trajectory; empty if it can be scored.
 #[must_use]
 pub fn problems(distances: &Distances, demand: &Demand, trajectory: &Trajectory) -> Vec<Invalid> {
     let mut wrong = path(distances, demand).err().unwrap_or_default();
@@ -111,7 +111,7 @@ fn wrong_with(distances: &Distances, start: Option<usize>, places: &[usize], nam
         _ => {}
     }
     for (at, hop) in places.windows(2).enumerate() {
-        // An unknown viewpoint is told already; its hops would add nothing.
+        // Unknown viewpoints are already in the list, so their hops are not reported again.
         let is_told = hop.contains(&NOWHERE);
         if !is_told && hop[0] != hop[1] && !distances.joins(hop[0], hop[1]) {
             let [from, to] = [hop[0], hop[1]].map(|place| distances.name(place).clone());
@@ -121,6 +121,5 @@ fn wrong_with(distances: &Distances, start: Option<usize>, places: &[usize], nam
     wrong
 }
 
-/// The place of a viewpoint that the scene does not have. No real place has this number, and none of these leaves this
-/// file.
+/// Marks a viewpoint that the scene does not have. No real place has this number, and the mark is used only within this file.
 const NOWHERE: usize = usize::MAX;

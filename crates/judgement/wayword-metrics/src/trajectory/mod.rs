@@ -1,4 +1,5 @@
-//! How well a trajectory over a viewpoint graph did what its episode demands.
+//! The figures of vision-and-language navigation (success, SPL, nDTW and others): how well an agent's trajectory over a viewpoint
+//! graph meets the demand of its episode.
 
 mod atlas;
 mod course;
@@ -22,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
 
-/// What counts as success. Every figure is shown with its rule.
+/// The rule that decides what counts as success. Every figure is shown with its rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -33,7 +34,7 @@ pub enum Rule {
     Visible,
 }
 
-/// What an episode demands of a trajectory.
+/// The demand of an episode: the annotated path, and the target object if there is one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Demand {
     /// The annotated path, from start to goal; never empty.
@@ -64,9 +65,9 @@ pub struct Score {
     pub oracle_error_m: Option<f64>,
     /// By the distance rule.
     pub distance: Outcome,
-    /// By the rule of visibility, where the episode names an object and it is known from where it is visible.
+    /// By the rule of visibility; `None` if the episode names no object, or it is not known from where the object is visible.
     pub visible: Option<Outcome>,
-    /// Whether the object is the target's; `None` where the episode names none.
+    /// Whether the agent named the target object; `None` if the episode has none.
     pub grounding: Option<Grounding>,
     /// Normalised dynamic time warping, in [0, 1].
     pub ndtw: f64,
@@ -74,7 +75,7 @@ pub struct Score {
     pub cls: f64,
 }
 
-/// What a rule of success says.
+/// The figures of a trajectory that depend on the rule of success.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// At the last viewpoint.
@@ -92,7 +93,7 @@ pub struct Outcome {
 pub struct Grounding {
     /// Remote grounding success, whatever the navigation.
     pub rgs: bool,
-    /// The same weighted by path length.
+    /// The same weighted by path length, as in SPL.
     pub rgspl: f64,
 }
 
@@ -137,7 +138,7 @@ impl Metric {
         Self::Rgspl,
     ];
 
-    /// What tables call it.
+    /// Its abbreviation in tables.
     #[must_use]
     pub fn short(self) -> &'static str {
         match self {

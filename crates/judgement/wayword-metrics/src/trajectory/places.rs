@@ -1,4 +1,4 @@
-//! Which number a viewpoint has.
+//! Numbers the viewpoints of a scene, and looks them up by name. Figures are computed over these numbers.
 
 use wayword_core::ViewpointId;
 
@@ -10,13 +10,13 @@ use wayword_core::ViewpointId;
 pub(super) struct Places {
     /// The first bytes of each name, as a number that sorts as they do.
     heads: Vec<u64>,
-    /// The next bytes of each, so that a short name need not be fetched from elsewhere. A longer one has bytes here that no
-    /// text has.
+    /// The bytes after the head of each name, so that short names are compared without following a pointer. Long names have here
+    /// 255 in every byte, which is not valid UTF-8 and so equals no name.
     tails: Vec<[u8; TAIL]>,
     names: Vec<ViewpointId>,
 }
 
-/// How many bytes come first, and then: together the length of Matterport's names.
+/// Bytes of the head and of the tail of a name: together the length of Matterport3D's names, 32.
 const HEAD: usize = 8;
 const TAIL: usize = 24;
 
@@ -40,7 +40,7 @@ impl Places {
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         let head = head(name);
         let first = self.heads.partition_point(|other| *other < head);
-        // A name that is filled up with zeros would be found for one that ends in them. Real names have none.
+        // A short name, padded with zeros, equals a full-length name that ends in zeros. Real names contain no zeros.
         if is_short(name) && *self.heads.get(first)? == head && self.tails[first] == tail(name) {
             return Some(first);
         }
@@ -80,7 +80,7 @@ mod tests {
     proptest! {
         /// Names of few letters, of which many begin alike, and some are the beginning of others.
         #[test]
-        fn every_name_is_found_where_it_sorts_and_no_other(
+        fn find_returns_the_sorted_position_of_known_names_only(
             names in prop::collection::btree_set("[ab]{0,3}(long_head)?(and_a_tail_of_32_bytes)?[ab]{1,4}", 0..40),
             other in "[ab]{0,3}(long_head)?(and_a_tail_of_32_bytes)?[ab]{1,4}",
         ) {

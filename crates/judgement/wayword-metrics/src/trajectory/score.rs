@@ -1,16 +1,16 @@
-//! The figures of one trajectory.
+//! Scores one trajectory, and defines what the figures are in cases that the reference implementations leave open.
 
 use super::{Course, Demand, Distances, Invalid, Score, Trajectory, problems};
 use wayword_core::{ObjectId, ViewpointId};
 
-/// The figures of a trajectory, or all that keeps it from having any.
+/// The figures of a trajectory, or all problems that make it impossible to score.
 ///
 /// SR, OSR, NE, TL and SPL by distance are R2R's (`tasks/R2R/eval.py`; SPL as Anderson et al. 2018 define it), SR, OSR,
 /// SPL by visibility, RGS and RGSPL are REVERIE's (`tasks/REVERIE/eval_release.py`), nDTW, SDTW and CLS are those of
-/// VLN-DUET (`map_nav_src/r2r/eval_utils.py`). Where they leave a case open:
+/// VLN-DUET (`map_nav_src/r2r/eval_utils.py`). Cases that they leave open are decided as follows:
 ///
-/// - The start is the goal and the agent stays: the references divide zero by zero; here such a success weighs 1. An
-///   agent that moves although the start is the goal has SPL 0, as there.
+/// - The start is the goal and the agent stays: the references divide zero by zero; here the SPL is 1. An agent that moves
+///   although the start is the goal has SPL 0, as in the references.
 /// - The goal cannot be reached from the start: the references fail; here there are no errors, no success by distance,
 ///   and every SPL and RGSPL is 0, because there is no shortest path.
 /// - Neither the annotated path nor the trajectory moves: CLS divides zero by zero in the reference; here it is 1. An
@@ -25,7 +25,7 @@ pub fn score(distances: &Distances, demand: &Demand, trajectory: &Trajectory) ->
     let object = trajectory.object.as_ref().map(ObjectId::as_str);
     match Course::new(distances, demand) {
         Ok(course) => course.score(distances, names, object),
-        // With the problems of the trajectory.
+        // The episode has problems. Report those of the trajectory as well.
         Err(_) => Err(problems(distances, demand, trajectory)),
     }
 }

@@ -1,4 +1,4 @@
-//! Graphs and walks for tests.
+//! Graphs, episodes and trajectories for the property tests of this folder.
 
 use super::{Demand, Trajectory};
 use proptest::prelude::*;
@@ -50,7 +50,7 @@ fn walk(graph: &ViewpointGraph, start: usize, choices: &[usize]) -> Vec<Viewpoin
     taken
 }
 
-/// A graph, what is demanded on it, and a trajectory that may be scored. Sometimes the goal cannot be reached.
+/// A graph, an episode on it, and a trajectory that can be scored. Sometimes the goal cannot be reached.
 pub(super) fn any_case() -> impl Strategy<Value = (ViewpointGraph, Demand, Trajectory)> {
     let choices = || prop::collection::vec(0..20usize, 0..12);
     let seen = prop::collection::btree_set(0..14usize, 0..8);

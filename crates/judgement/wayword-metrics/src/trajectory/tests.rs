@@ -47,7 +47,7 @@ fn the_annotated_path_itself_has_the_best_of_all_figures() {
 }
 
 #[test]
-fn who_passes_the_goal_has_oracle_success_alone() {
+fn passing_the_goal_gives_only_oracle_success() {
     let found = scored(&[0, 1], &[1], &[0, 1, 2, 3]);
     assert_eq!((found.navigation_error_m, found.oracle_error_m), (Some(4.0), Some(0.0)));
     let passed =
@@ -65,7 +65,7 @@ fn success_by_distance_ends_before_three_metres() {
 }
 
 #[test]
-fn visibility_asks_for_no_nearness_and_nearness_for_no_visibility() {
+fn rules_of_distance_and_visibility_are_independent() {
     let far = scored(&[0, 1, 2, 3, 4], &[0], &[0]);
     assert!(far.visible.unwrap().success && !far.distance.success);
     assert_eq!(far.visible.unwrap().spl, 1.0, "a nearer viewpoint that sees the object is no better than the goal");
@@ -97,7 +97,7 @@ fn coverage_is_weighted_by_the_length_that_it_expects() {
 }
 
 #[test]
-fn who_stays_where_the_goal_is_has_done_all() {
+fn staying_at_a_start_that_is_the_goal_has_the_best_figures() {
     let found = scored(&[0], &[0], &[0, 0]);
     assert_eq!((found.distance.spl, found.visible.unwrap().spl, found.cls, found.ndtw), (1.0, 1.0, 1.0, 1.0));
     let left = scored(&[0], &[1], &[0, 1]);
@@ -135,7 +135,7 @@ fn an_episode_without_an_object_is_judged_by_distance_alone() {
 }
 
 #[test]
-fn every_problem_is_told_and_nothing_is_scored() {
+fn score_reports_every_problem() {
     let no_edge = |step, from, to| Invalid::NoEdge { step, from: id(from), to: id(to) };
     assert_eq!(
         wrong(&[0, 1], &[0, 2, 2, 9, 1, 4]),
@@ -170,7 +170,7 @@ proptest! {
     }
 
     #[test]
-    fn whoever_walks_the_annotated_path_keeps_to_it_wholly((graph, demand, _) in any_case()) {
+    fn walking_the_annotated_path_gives_full_fidelity((graph, demand, _) in any_case()) {
         let trajectory = Trajectory { viewpoints: demand.reference.clone(), object: None };
         // A path with a hop that is no edge cannot be walked.
         if let Ok(found) = score(&Distances::new(&graph), &demand, &trajectory) {
@@ -181,7 +181,7 @@ proptest! {
     }
 
     #[test]
-    fn staying_changes_nothing_but_ndtw((graph, demand, trajectory) in any_case(), at in 0..12usize) {
+    fn a_stay_changes_only_ndtw((graph, demand, trajectory) in any_case(), at in 0..12usize) {
         let distances = Distances::new(&graph);
         let brisk = score(&distances, &demand, &trajectory).unwrap();
         let mut slow = trajectory;

@@ -1,7 +1,7 @@
-//! Which words keep their full stop. Asked of the reference for every word of up to four letters, and for a list of
-//! longer ones.
+//! Abbreviations: words that keep the full stop after them. The lists were made by giving the reference tokenizer every word of up to
+//! four letters, and a list of longer ones.
 
-/// In any letters.
+/// In small or capital letters.
 const ANY: &str = "\
 al cf co ct dr ft ga jr ky lt md mo mr ms mt ph rd rt sq sr st va vs vt wm \
 adj adm adv ala apr aug ave bhd cie col cos cpl dak dec det drs ens esq est etc ext feb fla fri gen gov hon inc ind \
@@ -11,20 +11,20 @@ alex ariz assn asst atty bldg blvd brig bros capt cmdr colo conn corp dept elec 
 mlle mont msgr natl okla penn pres prof reps sens sept supt tenn tues univ wisc \
 assoc attys calif comdr lieut messrs profs supts thurs treas";
 
-/// With a capital, because the words also mean something else.
+/// Only with a capital, because the words also mean something else.
 const CAPITALISED: &str = "Az La Pa Ark Del Ill Ore Tex Mass Miss Wash";
 
 /// Not in capitals throughout.
 const NOT_IN_CAPITALS: &str = "mfg mtg pte pty ppte ppty ptes ptys";
 
-/// Those that keep it even before one more letter: they often end a sentence.
+/// Abbreviations that often end a sentence. They keep the full stop even if a letter follows it directly.
 const ENDING: &str = "\
 al co ct ga jr ky md mo rd rt sq sr va vt ala apr aug bhd cos dak dec esq est etc ext feb fla fri inc ind jan jul jun \
 kan ltd mar mon neb nev nov oct plc sep seq sys tel thu tue wed wis wyo ariz assn bldg blvd bros colo conn corp intl \
 kans mich minn mont okla penn sept tenn tues univ wisc calif thurs az la pa ark del ill ore tex mass miss wash \
 pte pty ppte ppty ptes ptys";
 
-/// Before a number, in any letters.
+/// Only before a number, in small or capital letters.
 const BEFORE_A_NUMBER: &str = "ca no op pp art fig nos figs prop";
 
 fn has(list: &str, word: &str) -> bool {

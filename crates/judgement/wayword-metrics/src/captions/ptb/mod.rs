@@ -1,8 +1,8 @@
-//! Tokens as `pycocoevalcap` has them: those of Stanford's PTB tokenizer (CoreNLP 3.4.1, `-preserveLines -lowerCase`),
-//! without the punctuation marks that `pycocoevalcap` then leaves out.
+//! The tokenizer of `pycocoevalcap`: Stanford's PTB tokenizer (CoreNLP 3.4.1, `-preserveLines -lowerCase`), without the
+//! punctuation marks that `pycocoevalcap` then drops.
 //!
-//! The tokenizer takes the longest of many shapes at each place ([`table`]), so this one does too. It was written from what
-//! the reference answers, not from its source. Where they are known to agree, and to differ, is in `docs/CRITICS.md`.
+//! Like the original, it takes at each position the longest match among many patterns ([`table`]). It was written by observing the
+//! answers of the original, without its source. `docs/CRITICS.md` lists where the two are known to agree and to differ.
 
 mod abbreviations;
 mod shape;
@@ -14,10 +14,10 @@ use table::{ROWS, Taken};
 
 static SHAPES: LazyLock<Shapes> = LazyLock::new(|| Shapes::new(ROWS.iter().map(|row| row.shape)));
 
-/// A blank within a token, as the reference writes it.
+/// The reference writes a blank within a token as this no-break space.
 const NO_BREAK: char = '\u{a0}';
 
-/// Takes a text apart. White space is collapsed first ([`super::collapsed`]), because the reference reads texts line by line.
+/// Splits a text into tokens. White space is collapsed first ([`super::collapsed`]), because the reference reads texts line by line.
 #[must_use]
 pub fn ptb(text: &str) -> Vec<String> {
     let text: Vec<char> = super::collapsed(text).chars().collect();
@@ -36,7 +36,7 @@ pub fn ptb(text: &str) -> Vec<String> {
     tokens
 }
 
-/// The token that a text begins with: how its shape is taken, and its length.
+/// Finds the token at the beginning of a text: how much of the match becomes the token, and the token's length in characters.
 fn first(text: &[char]) -> (Taken, usize) {
     let found = SHAPES.longest(text, |row, length| length_of(row, text, length) > 0);
     match found.and_then(|(row, length)| Some((ROWS.get(row)?.taken, length_of(row, text, length)))) {
@@ -45,7 +45,7 @@ fn first(text: &[char]) -> (Taken, usize) {
     }
 }
 
-/// How long the token is where a shape covers `length` characters; 0 where it is none.
+/// The length of the token if the pattern of row `row` matches `length` characters; 0 if the rest of its condition does not hold.
 fn length_of(row: usize, text: &[char], length: usize) -> usize {
     let (covered, after) = text.split_at(length);
     let next_is = |wanted: fn(char) -> bool| after.first().is_some_and(|c| wanted(*c));
@@ -68,10 +68,11 @@ fn length_of(row: usize, text: &[char], length: usize) -> usize {
     }
 }
 
-/// Punctuation marks that are left out. `pycocoevalcap` also names brackets, but in capitals, so that it keeps them.
+/// Punctuation marks that are dropped. `pycocoevalcap` lists brackets too, but in capitals (`-LRB-`), so they never match its
+/// lower-case tokens and stay.
 const LEFT_OUT: [&str; 14] = ["", "''", "'", "``", "`", ".", "?", "!", ",", ":", "-", "--", "...", ";"];
 
-/// A token as the reference writes it; `None` where it writes nothing.
+/// A token as the reference writes it; `None` if the reference drops it.
 fn written(taken: Taken, token: &[char]) -> Option<String> {
     if let [one] = token {
         return sign(*one).map_or_else(|| Some(one.to_lowercase().collect()), |sign| sign.map(str::to_owned));
@@ -92,7 +93,7 @@ fn written(taken: Taken, token: &[char]) -> Option<String> {
     Some(of_characters(taken, &text.replace("&amp;", "&").replace("&AMP;", "&")))
 }
 
-/// Whether a token is one sign again and again, also with blanks between.
+/// Whether a token is a run of one sign, possibly with blanks between.
 fn is_run(token: &[char], sign: char) -> bool {
     token.iter().all(|c| *c == sign || *c == ' ')
 }
@@ -120,7 +121,7 @@ fn has_curly_apostrophe(token: &str) -> bool {
         .any(|ending| ending.eq_ignore_ascii_case(&token.replace('\u{92}', "’")))
 }
 
-/// What HTML's names for signs are written as.
+/// The sign for an HTML entity; empty if the reference writes the entity as an empty token.
 fn entity(text: &str) -> Option<&'static str> {
     Some(match text {
         "&amp;" => "&",
@@ -131,7 +132,7 @@ fn entity(text: &str) -> Option<&'static str> {
     })
 }
 
-/// Quotation marks as they are written in a row.
+/// How a quotation mark is written in a token that consists only of quotation marks.
 fn quote(c: char) -> Option<&'static str> {
     Some(match c {
         '\'' | '’' | '›' | '\u{92}' => "'",
@@ -142,7 +143,8 @@ fn quote(c: char) -> Option<&'static str> {
     })
 }
 
-/// Signs that are written otherwise, or not at all.
+/// The replacement of a single sign: `Some(Some(..))` if it is written differently, `Some(None)` if it is dropped, `None` if it
+/// stays.
 fn sign(c: char) -> Option<Option<&'static str>> {
     Some(Some(match c {
         '(' => "-lrb-",
@@ -161,7 +163,7 @@ fn sign(c: char) -> Option<Option<&'static str>> {
         '¤' | '€' | '\u{80}' => "$",
         '"' | '…' | SOFT_HYPHEN | '\u{2010}'..='\u{2015}' => return Some(None),
         c if quote(c).is_some() => return Some(None),
-        // The reference drops what it cannot read, and says so.
+        // The reference drops characters that it cannot read, with a warning.
         c if c.is_control() || c as u32 > 0xffff => return Some(None),
         _ => return None,
     }))

@@ -1,4 +1,5 @@
-//! Shapes of tokens: small patterns, and the longest match of many at once.
+//! A small regular-expression engine for the tokenizer: it matches many patterns at once and finds the longest match. All patterns
+//! become one automaton (Glushkov's construction), so a text is scanned once for all of them.
 //!
 //! A pattern is made of characters and of
 //!
@@ -7,19 +8,19 @@
 //! - `{name}`: a class of characters, see [`Class`];
 //! - `\x`: the character itself.
 //!
-//! A small letter stands for the capital one too. A pattern cannot be wrong: what is left open is closed by its end.
-//! (Each pattern of the table has an example, and a test holds the two against each other.)
+//! A small letter matches the capital one too. Parsing never fails: brackets that are still open are closed by the pattern's end.
+//! (Each pattern of the table has an example, and a test checks that the pattern matches it.)
 
 use std::{collections::BTreeMap, iter::Peekable, str::Chars};
 
-/// Which characters stand at one place of a token.
+/// A set of characters, one of which a pattern accepts at one position.
 #[derive(Debug, Clone, PartialEq)]
 enum Class {
-    /// This character; a small letter also stands for the capital.
+    /// This character; a small letter also matches the capital.
     Same(char),
     /// Those in the ranges, or those in none of them.
     Set { ranges: Vec<(char, char)>, is_without: bool },
-    /// A letter of any script, and what is written within words.
+    /// A letter of any script, with other characters that Unicode counts as alphabetic.
     Letter,
     /// A digit of any script.
     Digit,
@@ -31,13 +32,13 @@ enum Class {
     SoftLetter,
     /// A small letter of ASCII.
     Small,
-    /// What ASCII has not.
+    /// A character beyond ASCII.
     High,
     /// This character and no other.
     Exactly(char),
 }
 
-/// Written within words to say where they may be broken; it is no part of the word.
+/// Marks where a word may be broken at the end of a line; it is not a letter of the word.
 pub(super) const SOFT_HYPHEN: char = '\u{ad}';
 
 impl Class {
@@ -152,25 +153,25 @@ fn set(chars: &mut Peekable<Chars<'_>>) -> Class {
     Class::Set { ranges, is_without }
 }
 
-/// A character of a pattern, and what may come after it.
+/// A state of the automaton: one position of a pattern, which accepts a class of characters, with the positions that may follow.
 #[derive(Debug)]
 struct Place {
     class: Class,
     next: Vec<usize>,
-    /// The shape that is complete here.
+    /// The number of the pattern that is complete here.
     ends: Option<usize>,
 }
 
-/// Many shapes, matched together.
+/// Many patterns as one automaton.
 #[derive(Debug, Default)]
 pub(super) struct Shapes {
     places: Vec<Place>,
-    /// Where a token may begin, for each ASCII character, and for all others.
+    /// The positions at which a match may begin, by its first character, for ASCII.
     starts: BTreeMap<char, Vec<usize>>,
     other_starts: Vec<usize>,
 }
 
-/// How a part begins and ends, and whether it may be left out.
+/// The positions at which a part of a pattern may begin and end, and whether the part may be left out.
 struct Ends {
     first: Vec<usize>,
     last: Vec<usize>,
@@ -178,7 +179,7 @@ struct Ends {
 }
 
 impl Shapes {
-    /// The shapes of patterns, numbered in their order.
+    /// Builds the automaton of patterns. The patterns are numbered in their order.
     pub(super) fn new<'a>(patterns: impl IntoIterator<Item = &'a str>) -> Self {
         let mut shapes = Self::default();
         let mut starts = Vec::new();
@@ -197,7 +198,7 @@ impl Shapes {
         shapes
     }
 
-    /// Gives each character of a part its place (Glushkov's construction: no step without a character).
+    /// Gives each character of a part a position (Glushkov's construction: the automaton has no empty transitions).
     fn add(&mut self, part: &Part) -> Ends {
         match part {
             Part::One(class) => {
@@ -256,8 +257,8 @@ impl Shapes {
         }
     }
 
-    /// The longest match at the start of a text, of those that `holds` accepts: its shape and its length in characters.
-    /// Of several shapes of one length it is the first.
+    /// The longest match at the start of a text, as the number of its pattern and its length in characters. `holds` gets both and
+    /// may reject a match. Of several patterns with matches of equal length, the first is taken.
     pub(super) fn longest(&self, text: &[char], mut holds: impl FnMut(usize, usize) -> bool) -> Option<(usize, usize)> {
         let mut found = None;
         let mut now: Vec<usize> = Vec::new();
@@ -320,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_open_ends_with_the_pattern() {
+    fn open_brackets_end_with_the_pattern() {
         assert_eq!(longest(&["(a[b"], "ab"), Some((0, 2)));
         assert_eq!(longest(&["a\\"], "a\\"), Some((0, 2)));
     }

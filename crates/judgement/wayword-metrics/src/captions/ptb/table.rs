@@ -1,14 +1,14 @@
-//! Which shapes tokens have.
+//! The table of token patterns: for each kind of token its pattern, how much of a match becomes the token, and an example.
 //!
-//! The table was found by asking the reference tokenizer about made-up strings: all short ones over small alphabets, and
-//! millions of random ones. None of its code was used.
+//! The table was derived by running the reference tokenizer on made-up strings: all short ones over small alphabets, and millions
+//! of random ones. None of its code was used.
 
-/// How much of what a shape covers becomes a token; the rest is read again.
+/// How much of a match becomes the token, and under which condition. Reading goes on after the token, within the match.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Taken {
     /// All.
     All,
-    /// All, as it stands: soft hyphens are kept.
+    /// All, unchanged: soft hyphens are kept.
     Address,
     /// The first characters.
     First(usize),
@@ -37,14 +37,14 @@ use Taken::{
     NotBeforeLetter, NotInWord,
 };
 
-/// What is written of a token.
+/// One kind of token.
 #[derive(Debug)]
 pub(super) struct Row {
-    /// Its shape ([`super::shape`]).
+    /// Its pattern, in the syntax of [`super::shape`].
     pub(super) shape: &'static str,
-    /// How much of it is the token.
+    /// How much of a match is the token.
     pub(super) taken: Taken,
-    /// Something that has the shape.
+    /// A token of this kind.
     #[cfg(test)]
     pub(super) example: &'static str,
 }
@@ -55,7 +55,7 @@ macro_rules! rows {
     };
 }
 
-/// All shapes. The longest match counts, and of several the first.
+/// All kinds of tokens. The longest match wins; of equally long ones the first row.
 pub(super) const ROWS: &[Row] = rows! {
     // Marks of web pages and addresses.
     "</?[a-z][a-z0-9_:.\\-]*>|<[a-z][a-z0-9_:.\\-]*( +[a-z][a-z0-9_:.\\-]*( *= *(\"[^\"]*\"|'[^']*'))?)* */?>|<[!?][a-z\\-][^>]*>", Address, "<b class=\"x\">";

@@ -60,6 +60,6 @@ fn line_breaks_are_white_space() {
 }
 
 #[test]
-fn other_letters_and_signs() {
+fn ptb_handles_letters_and_signs_beyond_ascii() {
     assert_eq!(tokens("L'été à 5 £, ½ café «naïve» — 😀"), "l'été à 5 # 1/2 café naïve");
 }

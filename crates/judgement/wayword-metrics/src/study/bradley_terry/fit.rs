@@ -1,7 +1,8 @@
-//! The most likely parameters: strengths but the last one's, which is 0; the side; the tie.
+//! Fits the Bradley-Terry model: finds the parameters with the greatest likelihood. The parameters are the strengths of all systems
+//! but the last (that one is 0), the advantage of the first side, and the parameter of ties.
 //!
-//! The three outcomes are a multinomial logit whose utilities are linear in the parameters, so the likelihood has one top, and
-//! Newton's method reaches it.
+//! The three outcomes form a multinomial logit with utilities that are linear in the parameters. Its log-likelihood is concave, so
+//! it has a single maximum, and Newton's method finds it.
 
 use super::NoStrength;
 use std::collections::BTreeMap;
@@ -22,20 +23,20 @@ pub(super) struct Pair {
     pub(super) outcome: Outcome,
 }
 
-/// Newton's method ends where no parameter moves by more.
+/// Newton's method ends when no parameter moves by more than this.
 const PRECISION: f64 = 1e-12;
 const MOST_STEPS: usize = 100;
-/// A likelihood that falls by a smaller share only lost digits.
+/// A likelihood that falls by less than this share has only lost digits by rounding; the step is accepted.
 const ROUNDING: f64 = 1e-12;
-/// Odds of e^20 are beyond what choices of people can show; a likelihood that leads there has no top.
+/// Largest parameter. Choices of people cannot show odds of e^20, so a fit that gets there has no maximum.
 const MOST: f64 = 20.0;
 
-/// Parameters with what each choice contributes to their error.
+/// The fitted parameters, with the score vectors and the information matrix that their errors are computed from.
 pub(super) struct Fit {
     systems: usize,
     has_ties: bool,
     parameters: Vec<f64>,
-    /// By what was chosen between which two.
+    /// The gradient of one choice's log-likelihood, for each combination of systems and outcome.
     scores: BTreeMap<Pair, Vec<f64>>,
     information: Cholesky,
 }
@@ -66,7 +67,7 @@ impl Fit {
         Err(NoStrength::Endless)
     }
 
-    /// A system's strength above the mean of all, as a sum of parameters.
+    /// The weights that sum the parameters to a system's strength relative to the mean of all.
     pub(super) fn strength(&self, system: usize) -> Vec<f64> {
         let mut direction = vec![0.0; self.parameters.len()];
         let mean = 1.0 / self.systems as f64;
@@ -93,21 +94,21 @@ impl Fit {
         dot(&self.parameters, direction)
     }
 
-    /// What each choice contributes to the error of a sum of parameters.
+    /// The contribution of each choice to the error of a weighted sum of parameters.
     pub(super) fn influence(&self, direction: &[f64], pairs: &[Pair]) -> Vec<f64> {
         let weights = self.information.solve(direction);
         pairs.iter().map(|pair| self.scores.get(pair).map_or(0.0, |score| dot(score, &weights))).collect()
     }
 }
 
-/// Which parameters there are, and how often each choice was made.
+/// The model without its parameters: the number of systems, whether there are ties, and how often each choice was made.
 struct Model {
     systems: usize,
     has_ties: bool,
     counts: BTreeMap<Pair, f64>,
 }
 
-/// The logarithm of the likelihood at some parameters, with its derivatives.
+/// The log-likelihood at some parameters, with its derivatives.
 struct Top {
     likelihood: f64,
     gradient: Vec<f64>,
@@ -145,7 +146,7 @@ impl Model {
         top
     }
 
-    /// What each parameter adds to the first's, the second's and the tie's utility.
+    /// The weight of each parameter in the utilities of the three outcomes: first, second, tie.
     fn utilities(&self, pair: &Pair) -> [Vec<f64>; 3] {
         let side = self.systems - 1;
         let mut utilities = [(); 3].map(|()| vec![0.0; self.size()]);
@@ -166,11 +167,11 @@ impl Model {
     }
 }
 
-/// A symmetric matrix as the product of a lower triangle and its mirror image.
+/// The Cholesky factor of a symmetric positive definite matrix: a lower triangle L with L Lᵀ = the matrix.
 struct Cholesky(Vec<Vec<f64>>);
 
 impl Cholesky {
-    /// `None` where the matrix is singular.
+    /// Factors a matrix; `None` if it is singular.
     fn of(mut matrix: Vec<Vec<f64>>) -> Option<Self> {
         let size = matrix.len();
         let greatest = (0..size).map(|at| matrix[at][at]).fold(0.0, f64::max);
@@ -205,7 +206,7 @@ impl Cholesky {
     }
 }
 
-/// The logarithms of the chances of outcomes with these utilities.
+/// The logarithms of the probabilities of outcomes with these utilities (a softmax).
 fn chances_ln(utilities: &[Vec<f64>], parameters: &[f64]) -> Vec<f64> {
     let values: Vec<f64> = utilities.iter().map(|utility| dot(utility, parameters)).collect();
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

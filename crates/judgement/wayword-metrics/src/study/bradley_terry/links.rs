@@ -1,5 +1,6 @@
-//! Whether choices hold systems together: strengths are finite only where each system can be reached from each other one by
-//! choices that were not lost (Ford 1957; Davidson 1970 for ties).
+//! Checks that choices determine finite strengths. They do if and only if every system can be reached from every other along
+//! choices that were won or tied (Ford 1957; Davidson 1970 for ties). Otherwise some group of systems was never beaten, and its
+//! strength would be infinite.
 
 use super::NoStrength;
 use super::fit::{Outcome, Pair};
@@ -49,7 +50,7 @@ fn groups(pairs: &[Pair], systems: usize) -> Vec<usize> {
     groups
 }
 
-/// Which systems can be reached; `ways` says whether a choice leads from its first to its second, and back.
+/// Which systems can be reached from `from`. `ways` returns whether a choice leads from its first system to its second, and back.
 fn reached(pairs: &[Pair], systems: usize, from: usize, ways: impl Fn(&Pair) -> (bool, bool)) -> Vec<bool> {
     let mut next: Vec<Vec<usize>> = vec![Vec::new(); systems];
     for pair in pairs {

@@ -7,7 +7,7 @@
 //! first : second : tie  =  e^(a + s) : e^b : e^(t + (a + b + s) / 2)
 //! ```
 //!
-//! "Both bad" counts as a tie: it prefers neither. How often it was said is counted beside it.
+//! The answer "both bad" counts as a tie, because it prefers neither. It is also counted separately.
 
 mod fit;
 mod links;
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 
-/// What a person said of two texts.
+/// A person's preference between two texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Preference {
@@ -46,7 +46,7 @@ pub struct Comparison<P, I, S> {
     pub first: S,
     /// The system that was shown second.
     pub second: S,
-    /// What the person said.
+    /// The person's preference.
     pub preference: Preference,
 }
 
@@ -70,11 +70,11 @@ pub struct Strength<S> {
     pub wins: usize,
     /// How often the other was preferred.
     pub losses: usize,
-    /// How often neither was, "both bad" among them.
+    /// How often neither was preferred, including "both bad".
     pub ties: usize,
     /// How often both were called bad.
     pub both_bad: usize,
-    /// Its strength: the logarithm, above or below the mean of all.
+    /// The logarithm of its strength, relative to the mean of all systems.
     pub term: Term,
 }
 
@@ -85,7 +85,7 @@ pub struct BradleyTerry<S> {
     pub strengths: Vec<Strength<S>>,
     /// The logarithm of the odds that a system gains by being shown first.
     pub side: Term,
-    /// The logarithm of Davidson's parameter; none where nobody tied.
+    /// The logarithm of Davidson's parameter; `None` where no choice was a tie.
     pub tie: Option<Term>,
     /// How many choices.
     pub comparisons: usize,
@@ -158,7 +158,7 @@ fn counted<P, I, S: Ord + Clone>(comparisons: &[Comparison<P, I, S>], system: &S
     strength
 }
 
-/// The errors of a fit.
+/// Computes the standard errors of a fit, clustered by persons and items.
 struct Errors<'a> {
     fit: &'a Fit,
     pairs: &'a [Pair],
@@ -167,8 +167,8 @@ struct Errors<'a> {
 }
 
 impl Errors<'_> {
-    /// The variance of a sum of parameters, each times its part in `direction`: the sandwich, as sums of what each choice
-    /// contributes to the error.
+    /// The parts of the variance of the sum of parameters weighted by `direction`. It is the sandwich estimate, clustered over the
+    /// contributions of single choices to the error.
     fn parts(&self, direction: &[f64]) -> Parts {
         self.groups.parts(&self.fit.influence(direction, self.pairs), direction.len())
     }

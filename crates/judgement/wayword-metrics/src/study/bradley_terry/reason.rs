@@ -1,4 +1,4 @@
-//! Why choices give no strengths.
+//! The errors of the Bradley-Terry fit: why choices between systems determine no strengths.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoStrength {
-    /// Nobody chose.
+    /// There are no choices.
     #[error("there are no choices")]
     NoChoices,
     /// A system was compared with itself.
@@ -19,7 +19,8 @@ pub enum NoStrength {
         /// The systems of each group.
         groups: Vec<Vec<String>>,
     },
-    /// Some systems never lost to the others, nor tied with them, so no difference is too large.
+    /// Some systems never lost to the others, nor tied with them, so the likelihood has no maximum: larger differences always fit
+    /// better.
     #[error("{} never lost to {}, nor tied", above.join(", "), below.join(", "))]
     Separated {
         /// The systems that never lost.
@@ -30,10 +31,10 @@ pub enum NoStrength {
     /// All choices are ties.
     #[error("nobody preferred one to another")]
     OnlyTies,
-    /// Systems were always shown on the same side, so a side cannot be told from a strength.
+    /// Systems were always shown on the same side, so the effect of the side cannot be separated from their strengths.
     #[error("the sides do not vary enough to tell a side's advantage from a system's strength")]
     Sides,
-    /// The likelihood rises without end, or Newton's method did not reach its top: a side or ties decide too much.
+    /// The likelihood has no maximum, or Newton's method did not reach it: the sides or ties explain too much of the choices.
     #[error("no strengths are most likely: the sides and ties of these few choices explain them without end")]
     Endless,
     /// All choices are of one person about one item.

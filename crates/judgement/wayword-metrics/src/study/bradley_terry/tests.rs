@@ -48,7 +48,7 @@ fn a_side_and_ties_have_their_own_terms() {
 }
 
 #[test]
-fn what_gives_no_strength_says_why() {
+fn bradley_terry_reports_why_there_are_no_strengths() {
     let why = |of: &[(&'static str, &'static str, Preference, u32)]| bradley_terry(&choices(of), 0.95).unwrap_err();
     let names = |of: &[&str]| of.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
     assert_eq!(why(&[]), NoStrength::NoChoices);

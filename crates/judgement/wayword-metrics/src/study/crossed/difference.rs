@@ -1,8 +1,8 @@
-//! Differences between two conditions, whose persons and items may be the same ones.
+//! Differences between two conditions that may share persons and items.
 //!
-//! The variance of the difference is that of one sum of errors over both conditions, so what a person or an item does to both
-//! of them cancels. Shares: the interval takes up those of the two shares (Zou and Donner 2008, "MOVER"), with the correlation
-//! that this variance implies. For independent answers that is Newcombe's hybrid score interval (1998, method 10).
+//! The variance of the difference is that of one sum of errors over both conditions, so the effects that a person or an item has
+//! on both of them cancel. For shares, the interval combines those of the two shares (Zou and Donner 2008, "MOVER"), with the
+//! correlation that this variance implies. For independent answers that is Newcombe's hybrid score interval (1998, method 10).
 
 use super::{Figure, Groups, Method, around, errors, quantile};
 use crate::study::{Answer, Interval};
@@ -60,7 +60,7 @@ struct Both {
     correlation: f64,
     /// Whether no person and no item is in both.
     is_apart: bool,
-    /// How many persons or items the error rests on, whichever are fewer.
+    /// The number of persons or of items that the error is estimated from, whichever is smaller.
     fewest: usize,
 }
 
@@ -93,7 +93,7 @@ impl Both {
         Some(around(self.value(), half))
     }
 
-    /// The distances of the two figures from the ends of their intervals, taken together as their errors would be.
+    /// The hybrid interval: combines the distances of the two figures from the ends of their intervals like correlated errors.
     fn hybrid(&self) -> Option<Interval> {
         let [first, second] = &self.figures;
         let (of, other) = (first.interval?, second.interval?);
@@ -103,7 +103,8 @@ impl Both {
         Some(Interval { low: low.max(-1.0), high: high.min(1.0) })
     }
 
-    /// The difference, which is called `together` if both figures are `each` and no person or item is in both.
+    /// The difference. Its method is `together` if both figures have the method `each` and share no person or item, and clustered
+    /// otherwise.
     fn difference(self, each: Method, together: Method, interval: Option<Interval>) -> Difference {
         let is_simple = self.is_apart && self.figures.iter().all(|figure| figure.method == each);
         let method = if is_simple { together } else { Method::Clustered };
@@ -114,8 +115,8 @@ impl Both {
     }
 }
 
-/// Whether persons (or items) are in both conditions; and how many there are: all together then, and otherwise those of the
-/// condition with fewer, because that one's error is known least.
+/// Whether any person (or item) is in both conditions, and the number to use for the degrees of freedom: all distinct ones if some
+/// are in both, and otherwise those of the condition with fewer, because its error is known least.
 fn in_both<'a, P, I, T: Ord + 'a>(
     first: &'a [Answer<P, I>],
     second: &'a [Answer<P, I>],

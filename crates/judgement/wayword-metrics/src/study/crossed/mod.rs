@@ -1,6 +1,6 @@
 //! Shares and means of answers by persons to items, and differences between two conditions.
 //!
-//! Where each person and each item occurs once, answers are independent. Otherwise the variance is clustered both ways
+//! If each person and each item occurs once, answers are independent. Otherwise the variance is clustered both ways
 //! (`variance.rs`). Shares get their interval on the logit scale by the delta method, so that it stays within 0 and 1.
 
 mod difference;
@@ -22,12 +22,12 @@ pub enum Method {
     Student,
     /// The variance is clustered by persons and by items.
     Clustered,
-    /// A share of 0 or 1 whose answers are not independent: Wilson's interval of as many answers as there are persons or
-    /// items, whichever are fewer.
+    /// For a share of 0 or 1 of dependent answers: Wilson's interval of as many answers as there are persons or items, whichever
+    /// are fewer.
     Extreme,
     /// Newcombe's interval of the difference between two shares of independent answers.
     Newcombe,
-    /// There is no interval: nothing shows how far the figure can be trusted.
+    /// There is no interval: the data do not show how precise the figure is.
     None,
 }
 
@@ -111,7 +111,7 @@ impl Sample {
         self.figure(method, interval)
     }
 
-    /// The interval on the logit scale: the derivative of the logit is 1 / (p (1 - p)).
+    /// The interval on the logit scale, by the delta method: the derivative of the logit is 1 / (p (1 - p)).
     fn on_logits(&self, level: f64) -> Option<Interval> {
         let half = self.half(level)? / (self.mean * (1.0 - self.mean));
         let centre = logit_normal::logit(self.mean);
@@ -145,14 +145,14 @@ impl Sample {
     }
 }
 
-/// The mean of answers. Where all are the same it is that value, which a sum could miss by rounding.
+/// The mean of answers. It is summed as differences from the first answer, so that it is exact if all answers are equal.
 fn average<P, I>(answers: &[Answer<P, I>]) -> Option<f64> {
     let first = answers.first()?.value;
     let above: f64 = answers.iter().map(|answer| answer.value - first).sum();
     Some(first + above / answers.len() as f64)
 }
 
-/// What each answer contributes to the error of the mean.
+/// The contribution of each answer to the error of the mean.
 fn errors<P, I>(answers: &[Answer<P, I>], mean: f64) -> Vec<f64> {
     answers.iter().map(|answer| (answer.value - mean) / answers.len() as f64).collect()
 }

@@ -47,7 +47,7 @@ fn answers_that_go_together_widen_the_interval() {
 }
 
 #[test]
-fn all_alike_are_as_many_answers_as_persons_or_items() {
+fn equal_answers_count_once_per_person_or_item() {
     let given: Vec<(u32, u32, f64)> = (0..300).map(|n| (n / 10, n % 60, 1.0)).collect();
     let found = share(&answers(&given), 0.95).unwrap();
     assert_eq!((found.method, found.interval, found.se), (Method::Extreme, wilson(30.0, 30.0, 0.95), None));
@@ -56,7 +56,7 @@ fn all_alike_are_as_many_answers_as_persons_or_items() {
 }
 
 #[test]
-fn one_person_with_one_item_shows_nothing_beyond_them() {
+fn one_person_with_one_item_gives_no_interval() {
     let found = share(&answers(&[(1, 1, 1.0), (1, 1, 0.0)]), 0.95).unwrap();
     assert_eq!((found.value, found.interval, found.method), (0.5, None, Method::None));
     let found = mean(&answers(&[(1, 1, 3.0)]), 0.95).unwrap();
@@ -72,7 +72,7 @@ fn many_persons_on_one_item_are_independent() {
 }
 
 #[test]
-fn what_is_no_figure_is_none() {
+fn share_and_mean_are_none_for_invalid_input() {
     assert_eq!(share::<u32, u32>(&[], 0.95), None);
     assert_eq!(share(&answers(&[(1, 1, 2.0)]), 0.95), None);
     assert_eq!(mean(&answers(&[(1, 1, f64::NAN)]), 0.95), None);
@@ -90,7 +90,7 @@ fn independent_shares_differ_by_newcombes_interval() {
 }
 
 #[test]
-fn what_a_person_does_to_both_conditions_cancels() {
+fn effects_of_a_person_on_both_conditions_cancel() {
     let of = |shift: u32, from: u32| -> Vec<Answer<u32, u32>> {
         let value = |n: u32| f64::from(u8::from((n / 10).is_multiple_of(2) || n % 7 == shift));
         (0..300).map(|n| Answer { person: from + n / 10, item: n % 60, value: value(n) }).collect()

@@ -1,4 +1,4 @@
-//! The variance of a figure whose answers go together by person and by item.
+//! The variance of a figure if answers are correlated within each person and within each item.
 //!
 //! Cameron, Gelbach and Miller (2011): V = V_person + V_item - V_cell, each from the sums of errors within its groups, times
 //! G / (G - 1) (n - 1) / (n - k) for G groups, n answers and k figures that were estimated together. This is what statsmodels'
@@ -7,10 +7,10 @@
 
 use std::collections::BTreeMap;
 
-/// Sums of errors below this share of the errors are rounding.
+/// If the variance from persons and items is below this share of that from single answers, it is a rounding error.
 const BALANCED: f64 = 1e-20;
 
-/// The groups of answers, by number.
+/// For each answer the numbers of its person, its item and its cell (the pair of both), and how many of each there are.
 pub(in crate::study) struct Groups {
     persons: Vec<usize>,
     items: Vec<usize>,
@@ -28,7 +28,7 @@ impl Groups {
         Self { persons, items, cells, counts }
     }
 
-    /// The parts of the variance of a sum of errors; `estimated` figures were estimated together.
+    /// The parts of the variance of a sum of errors, where `estimated` parameters were estimated from the same answers.
     pub(in crate::study) fn parts(&self, errors: &[f64], estimated: usize) -> Parts {
         let answers = errors.len();
         let small = (answers.saturating_sub(1)) as f64 / (answers.saturating_sub(estimated)).max(1) as f64;
@@ -50,14 +50,14 @@ impl Groups {
     }
 }
 
-/// Numbers from 0 for what is the same.
+/// Numbers the distinct values from 0, in their order; equal values get equal numbers.
 fn numbered<T: Ord>(all: &[T]) -> Vec<usize> {
     let mut numbers: BTreeMap<&T, usize> = all.iter().map(|one| (one, 0)).collect();
     numbers.values_mut().zip(0..).for_each(|(number, at)| *number = at);
     all.iter().map(|one| numbers[one]).collect()
 }
 
-/// The parts of a variance, and the numbers of groups that they come from.
+/// The three parts of a two-way clustered variance, and how many answers, persons and items they come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::study) struct Parts {
     pub(in crate::study) person: f64,
@@ -69,7 +69,7 @@ pub(in crate::study) struct Parts {
 }
 
 impl Parts {
-    /// The variance. Where answers happen to balance within every person and every item, only single answers show any.
+    /// The variance. If the errors cancel within every person and every item, only the part of single answers is left.
     pub(in crate::study) fn variance(&self) -> f64 {
         let larger = self.person.max(self.item);
         if larger <= BALANCED * self.cell { self.cell } else { larger.max(self.person + self.item - self.cell) }
@@ -82,7 +82,7 @@ impl Parts {
         is_free(self.persons) && is_free(self.items) && self.persons.max(self.items) == self.answers
     }
 
-    /// The number of persons or items, whichever are fewer; a single one does not count beside the others.
+    /// The number of persons or of items, whichever is smaller. A number of 1 is ignored, because one person or item is no sample.
     pub(in crate::study) fn fewest(&self) -> usize {
         let several = [self.persons, self.items].into_iter().filter(|groups| *groups > 1);
         several.min().unwrap_or(1)

@@ -1,5 +1,5 @@
 //! Our figures against another evaluator's on real buildings, where both are available: `WAYWORD_DATA` names the folder
-//! of the data (`../shared/data` beside the repository is tried without it), and `WAYWORD_PARITY` a file of JSON lines,
+//! of the data (default: `../shared/data`, next to the repository), and `WAYWORD_PARITY` a file of JSON lines,
 //! each with `scan`, `reference`, `object`, `trajectory`, `named` and the `expected` figures, named and nested as in
 //! `Score`.
 
@@ -8,8 +8,6 @@
     clippy::print_stdout,
     reason = "a test fails by panicking, and says what it skipped or measured"
 )]
-
-mod common;
 
 use serde_json::Value;
 use std::{
@@ -22,7 +20,7 @@ use wayword_core::{Platform, SceneId};
 use wayword_metrics::{Atlas, Demand, Distances, Score, Trajectory, score};
 use wayword_platforms::Matterport;
 
-/// How often the figures are timed, because a single time says little while other programs run.
+/// How often the figures are timed. A single measurement is unreliable while other programs run.
 const PASSES: usize = 9;
 
 fn platform() -> Option<Matterport> {
@@ -74,12 +72,12 @@ fn figures_are_those_of_another_evaluator() {
     let mut all: Vec<(Arc<Distances>, Demand, Trajectory)> = Vec::new();
     for case in &cases {
         let scene = SceneId::new(case["scan"].as_str().unwrap()).unwrap();
-        let object = common::object(&case["object"]).unwrap();
+        let object = crate::common::object(&case["object"]).unwrap();
         let visible_from = seen
             .entry((scene.clone(), object.clone()))
             .or_insert_with(|| platform.visible_from(&scene, &object).unwrap().unwrap());
-        let demand = common::demand(case, Some(visible_from.clone()));
-        all.push((atlas.scene(&scene).unwrap(), demand, common::trajectory(case)));
+        let demand = crate::common::demand(case, Some(visible_from.clone()));
+        all.push((atlas.scene(&scene).unwrap(), demand, crate::common::trajectory(case)));
     }
     let pass = || -> (Vec<Score>, Duration) {
         let before = Instant::now();
@@ -89,7 +87,7 @@ fn figures_are_those_of_another_evaluator() {
     let fastest = (0..PASSES).map(|_| pass().1).min().unwrap();
     let (scores, _) = pass();
     for (n, (score, case)) in scores.iter().zip(&cases).enumerate() {
-        common::assert_agrees(score, &case["expected"], &format!("line {}", n + 1));
+        crate::common::assert_agrees(score, &case["expected"], &format!("line {}", n + 1));
     }
     println!("{} trajectories agree; their figures alone took {fastest:?} on one core", cases.len());
 }

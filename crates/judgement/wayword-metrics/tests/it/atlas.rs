@@ -1,4 +1,4 @@
-//! An atlas over the built-in houses.
+//! The cache of distances over the built-in houses: threads share it, and its errors are those of the platform.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -26,7 +26,7 @@ fn threads_share_one_and_the_same_distances_of_a_scene() {
 }
 
 #[test]
-fn a_scene_that_is_not_there_is_the_platforms_error() {
+fn atlas_passes_on_the_platforms_error_for_unknown_scenes() {
     let platform = HousePlatform::default();
     let found = Atlas::new(&platform).scene(&SceneId::new("no-such-scene").unwrap());
     assert!(matches!(found, Err(PlatformError::UnknownScene { .. })));

@@ -17,7 +17,7 @@ type Tokenizer = fn(&str) -> Vec<String>;
 
 const TOKENIZERS: [(&str, Tokenizer); 2] = [("ptb", ptb), ("split", split)];
 
-/// How far figures may be from those of the reference, which sums in another order.
+/// How far figures may differ from those of the reference, which adds numbers in another order.
 const TOLERANCE: f64 = 1e-9;
 
 fn json(file: impl AsRef<Path>) -> Value {

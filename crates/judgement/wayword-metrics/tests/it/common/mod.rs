@@ -1,11 +1,11 @@
-//! Cases whose figures another program computed.
+//! Reads test cases with the figures that another program computed for them.
 
 use serde_json::Value;
 use std::collections::BTreeSet;
 use wayword_core::{ObjectId, ViewpointId};
 use wayword_metrics::{Demand, Score, Trajectory};
 
-/// How far figures may differ that are sums in another order.
+/// How far figures may differ, because the other program adds numbers in another order.
 const TOLERANCE: f64 = 1e-9;
 
 pub(crate) fn viewpoints<'a, C: FromIterator<ViewpointId>>(ids: impl IntoIterator<Item = &'a Value>) -> C {

@@ -10,7 +10,7 @@ use wayword_metrics::{
 };
 
 const LEVEL: f64 = 0.95;
-/// What may differ where a formula gives the figure, and where an iteration does.
+/// Tolerances: for figures that a formula gives, and for figures that an iteration gives.
 const EXACT: f64 = 1e-9;
 const ITERATED: f64 = 1e-6;
 
@@ -109,7 +109,7 @@ fn assert_interval(found: Option<Interval>, expected: &Value, tolerance: f64, wh
     assert_near(found.high, &expected["high"], tolerance, what);
 }
 
-/// The script's figure, where it has one, against ours; returns whether it has.
+/// Compares our figure with the script's, if it has one; returns whether it has one.
 fn compare<T: Debug>(
     found: Option<T>,
     expected: &Value,
@@ -133,7 +133,7 @@ fn compare<T: Debug>(
 }
 
 fn studies() -> Vec<(Study, Lcg, Value)> {
-    let fixture: Value = serde_json::from_str(include_str!("../fixtures/study.json")).unwrap();
+    let fixture: Value = serde_json::from_str(include_str!("../../fixtures/study.json")).unwrap();
     let fixture = fixture.as_array().unwrap().clone();
     assert_eq!(fixture.len(), 100);
     let with = |(n, expected): (u64, Value)| {

@@ -3,8 +3,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use serde_json::Value;
 use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
 use wayword_metrics::{Distances, score};
@@ -16,7 +14,7 @@ fn graph(of: &Value) -> ViewpointGraph {
         graph.add(ViewpointId::new(id).unwrap(), DVec3::new(x, y, z), None).unwrap();
     }
     for edge in of["edges"].as_array().unwrap() {
-        let ends: Vec<ViewpointId> = common::viewpoints(edge.as_array().unwrap());
+        let ends: Vec<ViewpointId> = crate::common::viewpoints(edge.as_array().unwrap());
         graph.join(&ends[0], &ends[1]).unwrap();
     }
     graph
@@ -24,15 +22,15 @@ fn graph(of: &Value) -> ViewpointGraph {
 
 #[test]
 fn figures_are_those_of_the_official_definitions() {
-    let fixture: Value = serde_json::from_str(include_str!("../fixtures/trajectories.json")).unwrap();
+    let fixture: Value = serde_json::from_str(include_str!("../../fixtures/trajectories.json")).unwrap();
     let distances: Vec<Distances> =
         fixture["graphs"].as_array().unwrap().iter().map(|of| Distances::new(&graph(of))).collect();
     let cases = fixture["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 240);
     for (n, case) in cases.iter().enumerate() {
-        let seen = common::viewpoints(case["visible_from"].as_array().unwrap());
+        let seen = crate::common::viewpoints(case["visible_from"].as_array().unwrap());
         let on = &distances[case["graph"].as_u64().unwrap() as usize];
-        let found = score(on, &common::demand(case, Some(seen)), &common::trajectory(case)).unwrap();
-        common::assert_agrees(&found, &case["expected"], &format!("case {n}"));
+        let found = score(on, &crate::common::demand(case, Some(seen)), &crate::common::trajectory(case)).unwrap();
+        crate::common::assert_agrees(&found, &case["expected"], &format!("case {n}"));
     }
 }
