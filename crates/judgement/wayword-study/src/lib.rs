@@ -1,8 +1,10 @@
-//! A study with people: they walk by a text, rate it, or choose between two; nothing that they gave is lost.
+//! A study with people, who judge texts that describe a way: they walk by a text, rate one, or choose between two.
 //!
-//! A caller makes a study from items (text, path, pictures, graph) with [`Study::create`], [`serve`] shows it to people, and
-//! [`results()`] turns what they gave ([`Data`]) into tables. Architecture invariant: an async runtime lives in the folder `site` alone, and what a page receives
-//! never names a goal, a path, a scene or a condition.
+//! A caller makes a study from items (text, path, pictures, graph) with [`Study::create`]. [`serve`] shows it to people as a web site
+//! and keeps each answer on disk before it acknowledges it. [`results()`] turns the answers ([`Data`]) into tables.
+//!
+//! Architecture invariants: an async runtime lives in the folder `site` alone, and no page contains the name of a goal, a path, a scene
+//! or a condition, because a participant could guess from it which text is expected to be the better one.
 
 mod office;
 pub mod results;

@@ -1,4 +1,5 @@
-//! What the researcher does with a study, on its folder, also while it is served.
+//! The commands of the researcher: progress, links, closing, forgetting, exports. They work on the study's folder, also while the
+//! site is being served.
 
 use crate::{
     store::{Book, Forgotten, Invited, Progress, Reconciliation, Store, now_ms},
@@ -6,11 +7,11 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// Most personal links that are made at once.
+/// Largest number of personal links that one command makes.
 const MOST_LINKS: u32 = 100_000;
 
 impl Study {
-    /// The study with all that people gave.
+    /// Reads the study with all answers of its participants.
     ///
     /// # Errors
     /// When the database cannot be read.
@@ -18,7 +19,7 @@ impl Study {
         Store::open(&self.database())?.data(self, now_ms())
     }
 
-    /// How far it is.
+    /// Counts how many answers the study has and how many it still needs.
     ///
     /// # Errors
     /// When the database cannot be read.
@@ -41,10 +42,10 @@ impl Study {
         self.transact(|book| book.invite(count))
     }
 
-    /// Takes no more answers, and drops what recruiters call the participants.
+    /// Closes the study: it accepts no more answers, and the participants' ids at the recruiter are deleted.
     ///
     /// # Errors
-    /// When people are in the middle of it and `even_if_live` is not set, or the database cannot be written.
+    /// When people are still answering and `even_if_live` is not set, or the database cannot be written.
     pub fn close(&self, even_if_live: bool) -> Result<(), StudyError> {
         let live = self.transact(|book| book.close(even_if_live))?;
         if live > 0 && !even_if_live {
@@ -55,18 +56,17 @@ impl Study {
         Ok(())
     }
 
-    /// Removes all that a participant gave; with `is_dry` it only says what that would be. `participant` is an id of ours or the
-    /// recruiter's.
+    /// Deletes all data of a participant; with `is_dry` it only counts them. `participant` is our id or the recruiter's.
     ///
     /// # Errors
-    /// When there is no such participant, or the database cannot be written.
+    /// When the participant does not exist, or the database cannot be written.
     pub fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
         let forgotten = self.transact(|book| book.forget(participant, is_dry))?;
         Store::open(&self.database())?.sweep();
         Ok(forgotten)
     }
 
-    /// Holds a recruiter's list (CSV) against ours.
+    /// Compares a recruiter's list of participants (CSV) with ours.
     ///
     /// # Errors
     /// When the file cannot be read, or no participant has a recruiter's id.
@@ -74,7 +74,7 @@ impl Study {
         self.transact(|book| book.reconcile(file))
     }
 
-    /// Remembers a folder to which results are written, because it holds answers that somebody may want forgotten.
+    /// Remembers a folder to which results are written. It contains answers, which have to go too when somebody wants to be forgotten.
     ///
     /// # Errors
     /// When the database cannot be written.

@@ -1,4 +1,4 @@
-//! Random names that nobody can guess.
+//! Random names that cannot be guessed, for links, sessions and slots, and the hashes under which the database stores them.
 
 use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
 use sha2::{Digest, Sha256};
@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 /// Bytes of a token: 128 bits.
 const BYTES: usize = 16;
 
-/// A new token, as it stands in a link or cookie. It comes from the system, not from the seed of the study: a seed could be guessed.
+/// Makes a token for a link or cookie. It is random and does not come from the study's seed, because a seed could be guessed.
 ///
 /// # Errors
 /// When the system has no randomness.
@@ -21,7 +21,8 @@ pub(crate) fn is_token(text: &str) -> bool {
     text.len() == 22 && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_'))
 }
 
-/// What is kept in place of a token, so that who reads the database cannot come in with it.
+/// The hash that the database stores in place of a token, so that a reader of the database cannot use it to log in. Each part is
+/// preceded by its length, so that `["ab", "c"]` and `["a", "bc"]` differ.
 pub(crate) fn hash(parts: &[&str]) -> [u8; 32] {
     let mut hash = Sha256::new();
     for part in parts {

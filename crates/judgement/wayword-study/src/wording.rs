@@ -1,17 +1,17 @@
-//! The questions that people answer. The results print them, so they are the same in every study.
+//! The wording of the statements and questions about texts. It is the same in every study, so that results can be compared.
 
 /// A question with the words of its five levels, from 1 to 5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Scale {
     /// Its short name in tables and files.
     pub name: &'static str,
-    /// What is asked, or stated.
+    /// The question or statement.
     pub text: &'static str,
-    /// What the levels are called.
+    /// The words of the five levels.
     pub levels: [&'static str; 5],
 }
 
-/// How far one agrees; attention checks use it too.
+/// Levels of agreement with a statement; attention checks use them too.
 pub(crate) const AGREEMENT: [&str; 5] =
     ["Strongly disagree", "Disagree", "Neither agree nor disagree", "Agree", "Strongly agree"];
 

@@ -120,7 +120,7 @@ impl Site {
         Browser { address: self.address, origin: format!("http://{}", self.address), cookies: BTreeMap::new() }
     }
 
-    /// Somebody who has consented.
+    /// The browser of a participant who has consented.
     fn participant(&self) -> Browser {
         let token = self.study.invite(1).unwrap().tokens.remove(0);
         let mut browser = self.browser();
@@ -308,7 +308,7 @@ fn free_text_stays_text() {
 }
 
 #[test]
-fn a_form_that_lacks_something_comes_back_and_keeps_what_was_given() {
+fn an_incomplete_form_comes_back_with_the_filled_in_fields() {
     let site = Site::new(Mode::Rate, |settings| settings.write_first = false);
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
@@ -351,7 +351,7 @@ fn a_recruiters_id_leaves_the_address() {
 }
 
 #[test]
-fn who_declines_leaves_nothing_behind() {
+fn declining_the_consent_leaves_no_data_behind() {
     let site = Site::new(Mode::Pair, |settings| settings.codes.no_consent = "N0".into());
     let token = site.study.invite(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
@@ -362,7 +362,7 @@ fn who_declines_leaves_nothing_behind() {
 }
 
 #[test]
-fn another_sites_form_and_an_old_tab_change_nothing() {
+fn forms_of_other_sites_and_old_tabs_have_no_effect() {
     let site = Site::new(Mode::Pair, |_| {});
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
@@ -391,7 +391,7 @@ fn an_old_page_still_counts_after_the_link_was_opened_again() {
 }
 
 #[test]
-fn nobody_consents_to_a_page_that_has_changed() {
+fn consent_to_a_changed_page_is_asked_for_again() {
     let site = Site::new(Mode::Pair, |_| {});
     let token = site.study.invite(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
@@ -402,7 +402,7 @@ fn nobody_consents_to_a_page_that_has_changed() {
 }
 
 #[test]
-fn who_had_everything_deleted_does_not_come_in_again() {
+fn a_participant_with_deleted_answers_cannot_come_in_again() {
     let site = Site::new(Mode::Pair, |_| {});
     let token = site.study.invite(1).unwrap().tokens.remove(0);
     let mut browser = site.browser();
@@ -447,7 +447,7 @@ fn no_path_leads_out() {
 }
 
 #[test]
-fn what_is_too_much_is_refused() {
+fn oversized_requests_are_refused() {
     let site = Site::new(Mode::Rate, |_| {});
     let mut browser = site.participant();
     let slot = browser.get("/").field("slot");
@@ -474,7 +474,7 @@ fn an_open_address_needs_tls() {
     serve(study.clone(), &open(Security::SelfSigned), |started| url.clone_from(&started.url), || true).unwrap();
     assert!(url.starts_with("https://"), "{url}");
     let key = std::fs::read_to_string(folder.path().join("self-signed.key")).unwrap();
-    // The certificate stays the same, because browsers were told to trust it.
+    // The certificate stays the same, because browsers were set to trust it.
     serve(study, &open(Security::SelfSigned), |_| (), || true).unwrap();
     assert_eq!(std::fs::read_to_string(folder.path().join("self-signed.key")).unwrap(), key);
 }

@@ -1,29 +1,32 @@
-//! The answers that figures are made of.
+//! Collects the answers from which the figures are computed, and decides which participants count.
+//!
+//! An [`Answered`] is one item with its answer. For the figures it becomes one [`Given`] for each text that it judges, so a comparison
+//! of two texts becomes two.
 
 use super::{names::Names, walks::Walks};
 use crate::{Answer, Choice, Data, Item, Participant, Slot, SlotState, Status};
 use std::collections::BTreeMap;
 use wayword_metrics::{Score, Trajectory};
 
-/// What one person gave for one text: an answer, as figures take it. A comparison is two of them.
+/// The judgement of one person on one text. A comparison of two texts gives two of them.
 #[derive(Debug, Clone)]
 pub(super) struct Given<'a> {
-    /// The number of the participant among all.
+    /// Index of the participant in [`Data`].
     pub(super) person: usize,
     pub(super) route: u32,
-    /// The number of the text's condition in the plan.
+    /// Index of the text's condition in the plan.
     pub(super) condition: usize,
-    /// The levels of the questions or statements.
+    /// The chosen levels, from 1 to 5, one for each question or statement.
     pub(super) levels: &'a [u8],
     pub(super) walk: Option<&'a Score>,
     pub(super) seconds: Option<f64>,
     pub(super) presses: Option<u32>,
-    /// Of a comparison: 1 where this text was preferred, a half where neither was.
+    /// In a comparison: 1 if this text was preferred, 0.5 if neither was, else 0.
     pub(super) gain: Option<f64>,
     pub(super) both_bad: Option<bool>,
 }
 
-/// An item that a participant answered; practice is none.
+/// An item that a participant answered. Practice items are not among them.
 #[derive(Debug, Clone)]
 pub(super) struct Answered<'a> {
     pub(super) person: usize,
@@ -31,11 +34,11 @@ pub(super) struct Answered<'a> {
     pub(super) slot: &'a Slot,
     pub(super) item: &'a Item,
     pub(super) answer: &'a Answer,
-    /// Of a walk: its figures, where it has any.
+    /// The metrics of a walk; `None` for the other modes, and if they cannot be computed.
     pub(super) score: Option<Score>,
 }
 
-/// All answers of a study, in the order of participants and positions, and what kept any from having figures.
+/// All answers of a study, sorted by participant and position, and a message for each answer without figures.
 pub(super) fn answered<'a>(data: &'a Data, names: &Names<'_>) -> (Vec<Answered<'a>>, Vec<String>) {
     let people: BTreeMap<&str, (usize, &Participant)> =
         data.participants.iter().enumerate().map(|(at, person)| (person.id.as_str(), (at, person))).collect();
@@ -68,11 +71,12 @@ pub(super) fn answered<'a>(data: &'a Data, names: &Names<'_>) -> (Vec<Answered<'
     (all, problems)
 }
 
-/// Who gives no sign for longer than this was away: for a break, or until tomorrow.
+/// A pause longer than this between two actions counts as an absence, and the time of the answer is then not known.
 const AWAY_MS: i64 = 10 * 60 * 1000;
 
 impl Answered<'_> {
-    /// From getting the item to the answer, or to stopping; `None` where somebody was away meanwhile, or the clock was set.
+    /// Seconds from getting the item to the answer, or in a walk to stopping. `None` if the participant was away in between, or the
+    /// server's clock was changed.
     pub(super) fn seconds(&self) -> Option<f64> {
         let end = match self.answer {
             Answer::Follow { stopped_ms, .. } => *stopped_ms,
@@ -85,7 +89,7 @@ impl Answered<'_> {
         is_at_it.then(|| seconds(self.slot.given_ms, end))
     }
 
-    /// Moves, and turns to look.
+    /// In a walk: how often the participant pressed a button, to move or to look around.
     pub(super) fn presses(&self) -> Option<u32> {
         match self.answer {
             Answer::Follow { looks, .. } => {
@@ -103,12 +107,12 @@ impl Answered<'_> {
         }
     }
 
-    /// The numbers of the texts of a comparison, as they were shown: A, then B.
+    /// Indices of the two texts of a comparison in the order in which they were shown: A, then B.
     pub(super) fn sides(&self) -> [usize; 2] {
         if self.slot.is_turned { [1, 0] } else { [0, 1] }
     }
 
-    /// Of a comparison: the number of the text that was preferred, if one was.
+    /// In a comparison: the index of the text that was preferred, if one was.
     pub(super) fn preferred(&self) -> Option<usize> {
         match self.answer {
             Answer::Pair { choice: Choice::A } => Some(self.sides()[0]),
@@ -117,13 +121,13 @@ impl Answered<'_> {
         }
     }
 
-    /// The number of the condition of one of the item's texts.
+    /// Index of the condition of one of the item's texts.
     pub(super) fn condition(&self, data: &Data, text: usize) -> Option<usize> {
         let told = self.item.texts.get(text)?;
         data.plan.conditions.iter().position(|condition| condition.name == told.condition)
     }
 
-    /// As figures take it: one for each text that was judged.
+    /// Splits the answer into judgements, one for each text that was judged.
     pub(super) fn given(&self, data: &Data) -> Vec<Given<'_>> {
         let of_text = |text: usize| {
             let (gain, both_bad) = match self.answer {
@@ -155,12 +159,12 @@ pub(super) fn seconds(from_ms: i64, to_ms: i64) -> f64 {
     to_ms.saturating_sub(from_ms).max(0) as f64 / 1000.0
 }
 
-/// Whose answers a version of the tables takes.
+/// Which participants count in a version of the tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Whose {
-    /// Everybody's, except of those who were screened out.
+    /// All participants except those who were screened out.
     Everybody,
-    /// Of those who finished and passed the attention checks.
+    /// Only those who finished and passed the attention checks.
     Finished,
 }
 
@@ -174,7 +178,7 @@ impl Whose {
     }
 }
 
-/// The viewpoints of a walk, the start included.
+/// A walk as the metrics take it: its viewpoints, the start included.
 pub(super) fn trajectory(start: &wayword_core::ViewpointId, moves: &[crate::Move]) -> Trajectory {
     let viewpoints = std::iter::once(start).chain(moves.iter().map(|step| &step.viewpoint)).cloned().collect();
     Trajectory { viewpoints, object: None }

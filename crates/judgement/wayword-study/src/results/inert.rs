@@ -1,12 +1,12 @@
-//! Text that is nothing but text, whatever it holds.
+//! Escapes text from participants and files, so that it cannot act as markup, a formula or a command in any output format.
 
-/// Longest name in a table, characters, because names come from files.
+/// Longest name in a table, characters. Longer ones, which files may contain, are cut off.
 const MOST_NAME_CHARS: usize = 80;
-/// What stands in place of a character that cannot be shown.
+/// Replaces a character that cannot be shown.
 const REPLACED: char = '\u{fffd}';
 
-/// Text without characters that act instead of being seen: controls, and what turns the direction of the text around them.
-/// Ends of lines become `\n`, and tabs stay.
+/// Replaces characters that act instead of being seen: control characters, and those that reverse the direction of the text around
+/// them. Ends of lines become `\n`, and tabs stay.
 pub(super) fn plain(text: &str) -> String {
     let lines = text.replace("\r\n", "\n").replace('\r', "\n");
     lines.chars().map(|c| if is_active(c) && c != '\n' && c != '\t' { REPLACED } else { c }).collect()
@@ -33,7 +33,7 @@ fn is_active(c: char) -> bool {
     c.is_control() || turns || breaks
 }
 
-/// Text without a meaning in Markdown, on one line.
+/// Escapes text for Markdown, on one line.
 pub(super) fn markdown(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in line(text).chars() {
@@ -48,7 +48,7 @@ pub(super) fn markdown(text: &str) -> String {
     escaped
 }
 
-/// Text that LaTeX takes for nothing but text, on one line.
+/// Escapes text for LaTeX, on one line.
 pub(super) fn latex(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in line(text).chars() {
@@ -63,7 +63,7 @@ pub(super) fn latex(text: &str) -> String {
             '−' => escaped.push_str("$-$"),
             '≥' => escaped.push_str("$\\geq$"),
             '…' => escaped.push_str("\\ldots{}"),
-            // After the end of a line of a table it would begin an option.
+            // At the beginning of a table row, `[` would begin an option of the `\\` before it.
             '[' => escaped.push_str("{[}"),
             '{' | '}' | '$' | '&' | '#' | '_' | '%' => escaped.extend(['\\', c]),
             REPLACED => escaped.push('?'),
@@ -73,10 +73,10 @@ pub(super) fn latex(text: &str) -> String {
     escaped
 }
 
-/// Plain text as a cell of a CSV file (RFC 4180).
+/// Writes text as a cell of a CSV file (RFC 4180).
 ///
-/// A program of tables takes a cell that begins like a formula for one (ASVS 5.0, 1.2.10), so such a cell gets an apostrophe in
-/// front. So does one that begins with an apostrophe: whoever reads the file takes one apostrophe away, always.
+/// A spreadsheet would compute a cell that begins like a formula (ASVS 5.0, 1.2.10), so that cell gets an apostrophe in front. A cell
+/// that already begins with an apostrophe gets one as well, so that a reader of the file can always take exactly one away.
 pub(super) fn cell(text: &str) -> String {
     let begins = |c: char| matches!(c, '=' | '+' | '-' | '@' | '＝' | '＋' | '－' | '＠' | '−' | '\'');
     let is_formula = text.starts_with(['\t', '\r', '\n', '\0']) || text.trim_start().starts_with(begins);

@@ -1,4 +1,4 @@
-//! The results as tables for a paper.
+//! Writes the results as LaTeX tables for a paper.
 
 use super::{
     Less, Measure, Results, Unit, Version,
@@ -11,15 +11,15 @@ use crate::Kind;
 use std::{collections::BTreeMap, fmt::Write};
 use wayword_metrics::{Interval, Method};
 
-/// How many conditions stand side by side: as many as fit a page with their intervals.
+/// How many conditions one table has side by side: as many as fit on a page with their intervals.
 const ACROSS: usize = 3;
 
-/// What the tables need, as a comment.
+/// The comment at the top of the file: which packages the tables need.
 const HEAD: &str = "% \\usepackage{booktabs}; names beyond Latin letters need LuaLaTeX or XeLaTeX\n";
 
-/// With more columns of text than this, their lines break.
+/// If a table has more text columns than this, they get a fixed width, in which their lines break.
 const MOST_WHOLE: usize = 3;
-/// A table of longer rows is set smaller.
+/// A table with longer rows than this is set in a smaller font.
 const MOST_CHARS: usize = 60;
 
 /// The results as LaTeX tables; they need the package `booktabs`.
@@ -83,7 +83,7 @@ fn differences(page: &mut String, results: &Results, version: &Version) {
     compact(page, results, &columns.collect::<Vec<_>>(), &caption);
 }
 
-/// What a condition is, below its name.
+/// The second line of a column's heading: which kind of control the condition is, if it is one.
 fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Run => "",
@@ -92,7 +92,7 @@ fn kind(kind: Kind) -> &'static str {
     }
 }
 
-/// A figure with its interval and the letter of its method.
+/// A figure with its interval, and as a superscript the letter of the method that gave the interval.
 fn cell(measure: &Measure, figure: Option<&(f64, Option<&Interval>, Method)>) -> String {
     figure.map_or_else(
         || "--".to_owned(),
@@ -104,7 +104,7 @@ fn cell(measure: &Measure, figure: Option<&(f64, Option<&Interval>, Method)>) ->
     )
 }
 
-/// The name of a figure with its unit, as short as it goes.
+/// The name of a figure with its unit, in short form.
 fn heading(measure: &Measure) -> String {
     let unit = match measure.unit {
         Unit::PerCent => " (%)",

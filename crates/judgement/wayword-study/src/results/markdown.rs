@@ -1,4 +1,4 @@
-//! The results as Markdown.
+//! Writes the results as Markdown.
 
 use super::{
     Results,
@@ -9,7 +9,7 @@ use super::{
 };
 use std::fmt::Write;
 
-/// The results as Markdown, with the codebook of the files beside it.
+/// The whole report as Markdown. Its last section is the codebook: the meaning of every column of the CSV files.
 pub(super) fn markdown(results: &Results, sheets: &[Sheet]) -> String {
     let mut page = format!("# {}\n\n{}\n\n", escaped(&inert::name(&results.title)), escaped(&notes::subject(results)));
     for warning in notes::warnings(results) {

@@ -1,4 +1,5 @@
-//! What is measured: each figure of a study by its name, with its unit and meaning.
+//! The list of the figures that each mode of a study measures, with their names, units and meanings, and how each figure is read out
+//! of an answer.
 
 use super::given::Given;
 use crate::Mode;
@@ -14,11 +15,11 @@ pub struct Measure {
     pub label: &'static str,
     /// Whether it is a share or a mean.
     pub kind: MeasureKind,
-    /// In what it is shown. The values themselves are 0 to 1 where this is per cent.
+    /// The unit in which it is shown. Where this is per cent, the values themselves lie between 0 and 1.
     pub unit: Unit,
-    /// What it says.
+    /// Its meaning, as a phrase for readers.
     pub meaning: &'static str,
-    /// From where to where one value can go; no end where it has none.
+    /// The lowest and the highest value that one answer can give; `None` where there is no bound.
     pub range: [Option<f64>; 2],
     #[serde(skip)]
     of: Of,
@@ -28,13 +29,13 @@ pub struct Measure {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasureKind {
-    /// How many of the answers.
+    /// The share of the answers that fulfil a condition.
     Share,
     /// The mean over the answers.
     Mean,
 }
 
-/// In what a figure is shown.
+/// The unit in which a figure is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
@@ -50,7 +51,7 @@ pub enum Unit {
     Count,
 }
 
-/// Where a value comes from.
+/// Which part of an answer the value is read from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Of {
     Walk(Walked),
@@ -63,7 +64,7 @@ enum Of {
     BothBad,
 }
 
-/// A figure of a walk.
+/// A metric of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Walked {
     Success,
@@ -101,7 +102,7 @@ impl Measure {
         }
     }
 
-    /// What an answer adds to it, if anything.
+    /// The value of this figure for one judgement; `None` if the judgement has none.
     pub(super) fn value(&self, given: &Given<'_>) -> Option<f64> {
         let level = |at: usize| given.levels.get(at).copied();
         let yes = |is: bool| f64::from(u8::from(is));
@@ -122,7 +123,7 @@ impl Measure {
         FOLLOW.iter().filter(|measure| matches!(measure.of, Of::Walk(_)))
     }
 
-    /// What a walk adds to it, if anything.
+    /// The value of this figure for one walk; `None` if it is not a figure of walks.
     pub(super) fn of_walk(&self, score: &Score) -> Option<f64> {
         match self.of {
             Of::Walk(figure) => figure.of(score),
@@ -143,7 +144,7 @@ impl Measure {
     }
 }
 
-/// The names of the figures that reproduce the reading of arXiv 2403.11487.
+/// The names of the figures that count levels as arXiv 2403.11487 does.
 pub(super) const OF_THE_PAPER: [&str; 4] = ["similar_low", "accurate_high", "ghosts_any", "reachable_high"];
 
 const fn measure(

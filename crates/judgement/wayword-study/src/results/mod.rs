@@ -1,7 +1,8 @@
-//! What a study says: figures with intervals, agreement, who took part, and the files that show it.
+//! Computes the results of a study: figures with intervals, agreement between participants, participation, and the files that report
+//! them.
 //!
-//! Everything is made from [`Data`] alone, so that the same answers give the same files. No text of a participant is in a table or
-//! on a page; they are in `answers.csv` only.
+//! Everything is computed from [`Data`] alone, so the same answers give the same files. Texts that participants wrote appear only in
+//! `answers.csv`, and never in a table or on a page.
 
 mod given;
 mod inert;
@@ -36,13 +37,13 @@ use serde::Serialize;
 use sheet::Sheet;
 use sheets::Sources;
 
-/// How often an interval holds what it is about.
+/// Confidence level of all intervals.
 const LEVEL: f64 = 0.95;
 
-/// What a study says.
+/// All results of a study, as `results.json` contains them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Results {
-    /// What this file is, and its version.
+    /// Name and version of the file format.
     pub format: &'static str,
     /// The version of Wayword that made it.
     pub wayword: &'static str,
@@ -58,21 +59,21 @@ pub struct Results {
     pub is_closed: bool,
     /// Whether participants wrote a text of their own first.
     pub write_first: bool,
-    /// How often an interval holds what it is about.
+    /// Confidence level of the intervals.
     pub level: f64,
-    /// The conditions as they were given.
+    /// The conditions of the plan.
     pub conditions: Vec<crate::Condition>,
-    /// What was asked, with the words of the levels.
+    /// The questions or statements, with the words of their levels.
     pub scales: &'static [wording::Scale],
-    /// What is measured.
+    /// The figures of this mode, with their meanings.
     pub measures: &'static [Measure],
-    /// The figures: of everybody, and of those who finished and passed the attention checks.
+    /// The values of the figures: for all participants, and for those who finished and passed the attention checks.
     pub versions: [Version; 2],
     /// Who took part, and where people stopped.
     pub people: People,
-    /// What is wrong with the data, in words.
+    /// Problems of the data, in words.
     pub problems: Vec<String>,
-    /// The files of answers.
+    /// The CSV files.
     #[serde(skip)]
     sheets: Vec<Sheet>,
 }
@@ -86,7 +87,8 @@ fn scales(mode: Mode) -> &'static [wording::Scale] {
     }
 }
 
-/// What a study says, at a Unix time in milliseconds, which tells who has gone quiet.
+/// Computes the results. `now_ms` is the Unix time in milliseconds; participants whom the site has not seen for longer than the lease
+/// then count as gone quiet.
 ///
 /// # Errors
 /// When the study has no conditions.

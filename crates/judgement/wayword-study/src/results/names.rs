@@ -1,11 +1,11 @@
-//! What participants are called in the results.
+//! Gives participants the names that they have in the results.
 
 use crate::Data;
 use std::collections::BTreeMap;
 use wayword_core::seed;
 
-/// Names of participants in the results: `p001` and so on, in an order that is drawn, so that neither the id in the database nor
-/// the order of consent can be told from them.
+/// Names of participants in the results: `p001` and so on. The order is drawn by the seed, so that a name reveals neither the id in
+/// the database nor when the participant consented.
 #[derive(Debug, Clone)]
 pub(super) struct Names<'a> {
     names: BTreeMap<&'a str, String>,

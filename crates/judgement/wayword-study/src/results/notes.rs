@@ -1,11 +1,11 @@
-//! What to know before reading the figures.
+//! Writes the sentences around the tables: a summary of the study, warnings, and how to read the figures.
 
 use super::{Results, Version, words};
 use crate::Mode;
 use std::collections::BTreeSet;
 use wayword_metrics::Method;
 
-/// What the study was, in a sentence.
+/// A summary of the study: task, answers, persons, and whether it is closed.
 pub(super) fn subject(results: &Results) -> String {
     let [everybody, _] = &results.versions;
     let task = match results.mode {
@@ -24,7 +24,7 @@ pub(super) fn subject(results: &Results) -> String {
     format!("Mode {}: {task}. {answers} of {persons}. The study is {state}.{style}", results.mode.name())
 }
 
-/// What is wrong, or too little, to be read before anything else.
+/// Warnings that a reader has to see first: problems of the data, no answers, no control condition.
 pub(super) fn warnings(results: &Results) -> Vec<String> {
     let [everybody, _] = &results.versions;
     let mut warnings = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn warnings(results: &Results) -> Vec<String> {
     warnings
 }
 
-/// Methods that any interval of the tables was made by.
+/// The names of the methods by which any interval of the tables was computed.
 fn methods(versions: &[Version]) -> BTreeSet<&'static str> {
     let of_rows = versions
         .iter()
@@ -55,13 +55,13 @@ fn methods(versions: &[Version]) -> BTreeSet<&'static str> {
     of_rows.chain(of_less).chain(of_pairs).map(words::method).collect()
 }
 
-/// The methods that were used, in the order in which they are explained.
+/// The methods by which intervals were computed, in the order in which the notes explain them.
 pub(super) fn used(versions: &[Version]) -> Vec<Method> {
     let used = methods(versions);
     words::METHODS.into_iter().filter(|method| used.contains(words::method(*method))).collect()
 }
 
-/// How to read the figures.
+/// Explains how to read the figures, one note for each point.
 pub(super) fn notes(results: &Results) -> Vec<String> {
     let mut notes = vec![
         "Practice is in no figure. Neither are answers of those who did not understand the task in two tries.".to_owned(),

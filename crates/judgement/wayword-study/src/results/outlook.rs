@@ -1,4 +1,4 @@
-//! What a planned study asks for, and what it can find.
+//! Predicts what a planned study needs (answers, participants, minutes) and how small a difference it can detect.
 
 use super::{
     inert,
@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::{collections::BTreeSet, fmt};
 use wayword_metrics::{Detectable, detectable};
 
-/// What a planned study asks for, and what it can find: what `study plan` prints.
+/// The needs of a planned study, and the smallest differences that it detects. `study plan` prints this.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outlook {
     /// What people do.
@@ -21,7 +21,7 @@ pub struct Outlook {
     pub items: usize,
     /// The routes of these items.
     pub routes: usize,
-    /// How many answers each item shall have.
+    /// Planned answers of each item.
     pub per_item: usize,
     /// All answers.
     pub answers: usize,
@@ -29,15 +29,15 @@ pub struct Outlook {
     pub per_participant: usize,
     /// How many participants are needed, if all of them finish.
     pub participants: usize,
-    /// How long it takes each, minutes.
+    /// How long one participant needs, minutes.
     pub minutes: u32,
-    /// The power that the detectable differences are for.
+    /// The statistical power for which the detectable differences are computed.
     pub power: f64,
-    /// The significance of the two-sided test that they are for.
+    /// The significance level of the two-sided test for which they are computed.
     pub significance: f64,
-    /// The share around which they lie.
+    /// The share around which the two conditions are assumed to lie.
     pub base_share: f64,
-    /// The smallest differences that the study detects, by how much persons and routes differ.
+    /// The smallest detectable differences, each under another assumption of how much persons and routes differ.
     pub detectable: Vec<Found>,
 }
 
@@ -46,37 +46,37 @@ pub struct Outlook {
 pub struct Planned {
     /// The condition.
     pub condition: String,
-    /// What it is.
+    /// Where its texts come from.
     pub kind: Kind,
-    /// Its items.
+    /// The number of its items.
     pub items: usize,
 }
 
-/// The smallest difference that a study detects where persons and routes differ so much.
+/// The smallest difference that a study detects, under one assumption of how much persons and routes differ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Found {
     /// How much they differ: `none`, `middle` or `large`.
     pub effects: &'static str,
     /// The standard deviation of persons, and of routes, on the logit scale.
     pub sd: f64,
-    /// The difference between the shares of two conditions; where texts are compared, how far from an even split. None where no
-    /// difference has that power.
+    /// The difference between the shares of two conditions; where texts are compared, the distance from an even split. `None` if no
+    /// difference is detected with that power.
     pub difference: Option<f64>,
     /// Answers in each of two conditions; where texts are compared, comparisons of two conditions.
     pub answers: Option<f64>,
-    /// By how much the variance exceeds that of independent answers.
+    /// The factor by which the variance exceeds that of independent answers.
     pub design_effect: Option<f64>,
 }
 
-/// How much persons and routes differ, with the standard deviation on the logit scale.
+/// Three assumptions of how much persons and routes differ: a name, and the standard deviation on the logit scale.
 const EFFECTS: [(&str, f64); 3] = [("none", 0.0), ("middle", 0.75), ("large", 1.5)];
 const POWER: f64 = 0.8;
 const SIGNIFICANCE: f64 = 0.05;
-/// Where a difference is hardest to detect.
+/// The assumed share. Around a half, a difference is hardest to detect.
 const BASE: f64 = 0.5;
 
 impl Outlook {
-    /// What a study asks for, from its items.
+    /// Computes the outlook from the plan and the items.
     #[must_use]
     pub fn new(plan: &Plan, settings: &Settings, items: &[Item]) -> Self {
         let items: Vec<&Item> = items.iter().filter(|item| !item.is_practice).collect();
@@ -89,7 +89,7 @@ impl Outlook {
         let per_item = plan.per_item as usize;
         let per_participant = (plan.per_participant as usize).min(items.len());
         let answers = items.len() * per_item;
-        // Nobody gets an item twice.
+        // A participant gets each item at most once, so there must be as many participants as answers of one item.
         let participants = answers.div_ceil(per_participant.max(1)).max(if items.is_empty() { 0 } else { per_item });
         let mut outlook = Self {
             mode: plan.mode,
@@ -124,7 +124,7 @@ impl Outlook {
         }
     }
 
-    /// Two of the conditions, with their share of the answers.
+    /// The power calculation for two conditions, with their share of the answers.
     fn of_two(&self, sd: f64, items: &[&Item]) -> Option<wayword_metrics::Plan> {
         let [first, second] = self.conditions.get(..2)? else { return None };
         let routes = |name: &str| -> BTreeSet<u32> {
@@ -147,7 +147,7 @@ impl Outlook {
         })
     }
 
-    /// The comparisons of two of the conditions: as one share, it has the variance of half a difference.
+    /// The power calculation for comparisons of two conditions. It is one share, which has half the variance of a difference between two.
     fn of_pairs(&self, sd: f64) -> Option<wayword_metrics::Plan> {
         let conditions = self.conditions.len();
         let pairs = (conditions * conditions.saturating_sub(1) / 2).max(1);

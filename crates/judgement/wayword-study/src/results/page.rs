@@ -1,4 +1,4 @@
-//! The results as a page without scripts and without requests.
+//! Writes the results as one HTML page, which runs no scripts and loads nothing from elsewhere.
 
 use super::{
     Results, Version, inert, notes,
@@ -57,7 +57,7 @@ impl VersionView {
     }
 }
 
-/// The page.
+/// Renders the page.
 pub(super) fn page(results: &Results, sheets: &[Sheet]) -> Result<String, StudyError> {
     let people = &results.people;
     let drop_off: Option<DropOff> = plot::drop_off(&people.by_position);

@@ -1,22 +1,23 @@
-//! What comparisons of two texts say.
+//! Evaluates comparisons of two texts: wins and ties for each pair of conditions, and a strength for each condition by the model of
+//! Bradley and Terry.
 
 use super::{LEVEL, given::Answered};
 use crate::{Answer, Choice, Data};
 use serde::Serialize;
 use wayword_metrics::{BradleyTerry, Comparison, Figure, NoStrength, Preference, bradley_terry, share};
 
-/// What comparisons of two texts say.
+/// The results of all comparisons.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Pairs {
     /// One for each two conditions that were compared.
     pub rows: Vec<PairRow>,
-    /// How often the text shown as A was preferred, of the comparisons with a preference.
+    /// The share of preferences for the text shown as A. It is near a half unless people favour one side of the page.
     pub side: Option<Figure>,
     /// Strengths of the conditions, or why there are none.
     pub strengths: Strengths,
 }
 
-/// Two conditions that were compared.
+/// The comparisons between two conditions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PairRow {
     /// The one that comes first in the plan.
@@ -31,7 +32,7 @@ pub struct PairRow {
     pub ties: usize,
     /// How often neither was good.
     pub both_bad: usize,
-    /// The first one's share: wins, and half of what has no winner.
+    /// The share of the first one: its wins and half of the comparisons without a winner.
     pub share: Option<Figure>,
 }
 
@@ -50,7 +51,7 @@ pub enum Strengths {
     },
 }
 
-/// A comparison with the numbers of its conditions.
+/// The answer to a comparison, with the indices of the conditions of both texts.
 struct Compared<'a> {
     answered: &'a Answered<'a>,
     choice: Choice,
@@ -72,7 +73,7 @@ impl Pairs {
 }
 
 impl<'a> Compared<'a> {
-    /// `None` where a text is compared with one of its own condition, which says nothing of conditions.
+    /// `None` if both texts have the same condition: that comparison does not help to compare conditions.
     fn new(data: &Data, answered: &'a Answered<'a>) -> Option<Self> {
         let Answer::Pair { choice } = answered.answer else { return None };
         let [a, b] = answered.sides();

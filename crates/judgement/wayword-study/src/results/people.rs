@@ -1,4 +1,4 @@
-//! Who took part, and where people stopped.
+//! Counts the participants: how many took part, at which item people stopped, and who failed attention checks.
 
 use super::{
     given::{Answered, seconds},
@@ -8,34 +8,34 @@ use crate::{Data, Participant, Slot, SlotState, Status};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Who took part, and where people stopped.
+/// Counts of participants by how far they came, and of items by what became of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct People {
-    /// Who consented, the forgotten ones left out.
+    /// Participants who consented, without the forgotten ones.
     pub consented: usize,
-    /// Who answered everything and passed the attention checks.
+    /// Those who answered everything and passed the attention checks.
     pub complete: usize,
-    /// Who has not finished and was here within the lease.
+    /// Those who have not finished and were active within the lease.
     pub live: usize,
-    /// Who has not finished and was not here for longer than the lease.
+    /// Those who have not finished and have been inactive for longer than the lease.
     pub quiet: usize,
-    /// Who stopped and let us keep the answers.
+    /// Those who stopped and let us keep their answers.
     pub withdrawn: usize,
-    /// Who did not understand the task in two tries.
+    /// Those who did not understand the task in two tries.
     pub screened_out: usize,
-    /// Who answered everything and failed the attention checks.
+    /// Those who answered everything and failed the attention checks.
     pub attention_failed: usize,
-    /// Whose answers were deleted.
+    /// Those for whom all answers were deleted.
     pub forgotten: u64,
-    /// After how many seconds somebody counts as gone quiet.
+    /// The lease: after this many seconds without activity a participant counts as gone quiet.
     pub lease_s: u64,
     /// Median of the minutes from consent to the end, of those who answered everything.
     pub median_minutes: Option<f64>,
-    /// What the participants were told that it takes, minutes.
+    /// The minutes that the consent page announced.
     pub announced_minutes: u32,
     /// How many understood the task at once, at the second try, and not in two.
     pub misunderstood: [usize; 3],
-    /// What became of the items that were given, by their place in the sequence of a participant.
+    /// What became of the items, by their position in the sequence of a participant.
     pub by_position: Vec<Handed>,
     /// The same by condition.
     pub by_condition: Vec<Handed>,
@@ -45,7 +45,7 @@ pub struct People {
     pub attention: Attention,
 }
 
-/// What became of items that were given.
+/// What became of the items that were handed out, for one position, condition or item.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Handed {
     /// The position from 1, the name of the condition, or the number of the item.
@@ -54,9 +54,9 @@ pub struct Handed {
     pub given: usize,
     /// How many were answered.
     pub answered: usize,
-    /// How many went back.
+    /// How many were returned unanswered.
     pub returned: usize,
-    /// How many somebody still has.
+    /// How many a participant still has.
     pub live: usize,
     /// Median of the seconds from getting one to its answer.
     pub median_seconds: Option<f64>,
@@ -67,13 +67,13 @@ pub struct Handed {
 pub struct Attention {
     /// How many a participant gets.
     pub per_participant: u32,
-    /// How many failed checks are let pass: one in a study of 5 minutes or more, none in a shorter one (Prolific's rule).
+    /// How many failed checks are tolerated: one in a study of 5 minutes or more, none in a shorter one (Prolific's rule).
     pub most_failed: usize,
-    /// How many were answered, by everybody together.
+    /// How many were answered, by all participants together.
     pub answered: usize,
     /// How many of them were failed.
     pub failed: usize,
-    /// Who failed any.
+    /// The participants who failed at least one check.
     pub by_participant: Vec<Failed>,
 }
 
@@ -98,7 +98,7 @@ impl People {
         let started = people.iter().filter(|person| person.status == Status::Started);
         let quiet = started.clone().filter(is_quiet).count();
         let minutes = people.iter().filter_map(minutes).collect();
-        // Somebody who left at the questions has understood nothing yet, and failed at nothing.
+        // Participants who left at the questions have neither understood the task nor failed to.
         let is_known = |person: &&Participant| person.understood || person.status == Status::ScreenedOut;
         let known = || people.iter().filter(is_known);
         let times = |times: usize| known().filter(|person| person.misunderstood.min(2) as usize == times).count();
@@ -124,14 +124,14 @@ impl People {
     }
 }
 
-/// How long somebody took who answered everything.
+/// Minutes from consent to the end, of a participant who answered everything.
 fn minutes(person: &Participant) -> Option<f64> {
     let is_done = matches!(person.status, Status::Complete | Status::AttentionFailed);
     let end_ms = person.finished_ms.filter(|_| is_done)?;
     Some(seconds(person.consented_ms, end_ms) / 60.0)
 }
 
-/// The middle one, or the mean of the two in the middle.
+/// The median: the middle value, or the mean of the two in the middle.
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -142,7 +142,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     Some(f64::midpoint(*values.get(middle.checked_sub(1)?)?, high))
 }
 
-/// Items that were given, with the times of answers.
+/// Counts handed-out items by position, condition and item.
 struct Tally<'a> {
     data: &'a Data,
     slots: Vec<(&'a Slot, u32)>,
@@ -176,7 +176,7 @@ impl<'a> Tally<'a> {
     fn by_position(&self) -> Vec<Handed> {
         let last = self.slots.iter().map(|(_, position)| *position + 1).max().unwrap_or(0);
         let at = |place: u32| self.slots.iter().filter(move |(_, position)| *position == place).map(|(slot, _)| *slot);
-        // A place beyond what anybody was to get would be a broken store; the table stays small whatever it says.
+        // The bound keeps the table small if a damaged store contains an impossible position.
         (0..last.min(10_000)).map(|place| self.given((place + 1).to_string(), at(place))).collect()
     }
 

@@ -1,4 +1,4 @@
-//! What the plots of the page show.
+//! Computes the positions, labels and captions of the plots on the page: figures with intervals, levels, wins and drop-off.
 
 use super::{
     Handed, Measure, Results, Unit, Version,
@@ -8,13 +8,14 @@ use super::{
 };
 use serde::Serialize;
 
-/// Figures of the conditions with their intervals, one under another on one axis. Places are in per cent of the plot's width.
+/// A forest plot: the figures of the conditions with their intervals, one below the other on a common axis. Positions are in per cent
+/// of the plot's width.
 #[derive(Debug, Serialize)]
 pub(super) struct Forest {
     title: String,
     rows: Vec<ForestRow>,
     ticks: Vec<Tick>,
-    /// Where zero is, if a difference is shown.
+    /// Position of zero, in a plot of differences.
     zero: Option<f64>,
     caption: String,
 }
@@ -25,7 +26,7 @@ struct ForestRow {
     label: String,
     is_control: bool,
     at: f64,
-    /// Nothing where there is no interval.
+    /// Both ends of the interval; `None` if there is no interval.
     whisker: Option<[f64; 2]>,
     is_filled: bool,
     figure: String,
@@ -39,10 +40,10 @@ struct Tick {
     label: String,
 }
 
-/// How much of the plot's width is left free on either side, so that no dot is cut.
+/// Margin on either side, per cent of the plot's width, so that no dot is cut off.
 const EDGE: f64 = 3.0;
 
-/// From where to where a plot goes.
+/// The range of values of a plot, and the distance between two ticks.
 struct Axis {
     low: f64,
     high: f64,
@@ -50,7 +51,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// The axis of a measure: its whole range, or from 0 to a round number that holds all.
+    /// The axis of a measure: its whole range, or from 0 to a round number above all values.
     fn of(measure: &Measure, ends: &[f64]) -> Self {
         match measure.unit {
             Unit::PerCent => Self { low: 0.0, high: 1.0, step: 0.25 },
@@ -62,7 +63,7 @@ impl Axis {
         }
     }
 
-    /// The axis of differences, as far to the left as to the right.
+    /// The axis of differences, which is symmetric around zero.
     fn around_zero(ends: &[f64]) -> Self {
         let step = 2.0 * step(largest(ends));
         Self { low: -2.0 * step, high: 2.0 * step, step }
@@ -96,7 +97,7 @@ fn largest(ends: &[f64]) -> f64 {
     ends.iter().copied().filter(|end| end.is_finite()).map(f64::abs).fold(0.0, f64::max)
 }
 
-/// A quarter of a round number that is not below a value.
+/// A quarter of the smallest round number that is at least `most`.
 fn step(most: f64) -> f64 {
     let round = [
         0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 250.0, 500.0, 1000.0, 10_000.0,
@@ -104,7 +105,7 @@ fn step(most: f64) -> f64 {
     round.into_iter().find(|step| 4.0 * step >= most).unwrap_or(100_000.0)
 }
 
-/// A plot for each measure that any condition has a figure of.
+/// One plot for each measure for which any condition has a figure.
 pub(super) fn forests(results: &Results, version: &Version) -> Vec<Forest> {
     let forest = |measure: &Measure| {
         let figures: Vec<_> =
@@ -145,7 +146,7 @@ pub(super) fn forests(results: &Results, version: &Version) -> Vec<Forest> {
     results.measures.iter().filter_map(forest).collect()
 }
 
-/// A plot of the differences to the first condition for each measure that has any.
+/// One plot of the differences to the first condition for each measure that has any.
 pub(super) fn less(results: &Results, version: &Version) -> Vec<Forest> {
     let forest = |measure: &Measure| {
         let figures: Vec<_> =
@@ -196,13 +197,13 @@ fn shown(measure: &Measure, value: f64, interval: Option<&wayword_metrics::Inter
     format!("{} {ends}", words::value(measure, value))
 }
 
-/// A meaning as a sentence.
+/// Makes a sentence of a phrase: a capital letter in front and a full stop behind.
 fn sentence(meaning: &str) -> String {
     let mut letters = meaning.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
-/// The levels of a question, a bar for each condition.
+/// How often each level of a question was chosen, as one bar for each condition.
 #[derive(Debug, Serialize)]
 pub(super) struct Bars {
     title: String,
@@ -222,15 +223,15 @@ struct BarRow {
 /// A piece of a bar.
 #[derive(Debug, Serialize)]
 struct Part {
-    /// From 1.
+    /// Number of the segment's colour class, from 1.
     class: usize,
     at: f64,
     width: f64,
-    /// What is written on it, where there is room.
+    /// The count, if there is room for it on the segment; otherwise empty.
     label: String,
 }
 
-/// Per cent of a bar of levels, and of a narrow bar in the matrix, that a digit takes on a phone.
+/// Width of a digit on a phone, per cent of a bar of levels, and of a narrow bar in the matrix.
 const DIGIT: f64 = 4.0;
 const NARROW_DIGIT: f64 = 6.0;
 
@@ -249,7 +250,7 @@ fn parts(counts: &[usize], digit: f64) -> Vec<Part> {
     (1..).zip(counts).filter_map(&mut part).collect()
 }
 
-/// A plot of levels for each question.
+/// One plot of levels for each question.
 pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
     let of = |scale: &crate::wording::Scale| Bars {
         title: scale.text.to_owned(),
@@ -277,7 +278,7 @@ pub(super) fn bars(results: &Results, version: &Version) -> Vec<Bars> {
     results.scales.iter().map(of).filter(|bars| !bars.rows.is_empty()).collect()
 }
 
-/// Who wins against whom.
+/// How often each condition wins against each other one.
 #[derive(Debug, Serialize)]
 pub(super) struct Matrix {
     conditions: Vec<String>,
@@ -299,7 +300,7 @@ struct MatrixCell {
     parts: Vec<Part>,
 }
 
-/// The matrix of the comparisons of a version; `None` where there are none.
+/// The matrix of the comparisons of a version; `None` if there are none.
 pub(super) fn matrix(version: &Version) -> Option<Matrix> {
     let pairs = version.pairs.as_ref().filter(|pairs| !pairs.rows.is_empty())?;
     let names: Vec<&str> = version.rows.iter().map(|row| row.condition.as_str()).collect();
@@ -338,7 +339,7 @@ pub(super) fn matrix(version: &Version) -> Option<Matrix> {
     Some(Matrix { conditions: names.iter().map(|one| name(one)).collect(), rows: (0..names.len()).map(row).collect() })
 }
 
-/// How many were given the item at each position, and how many answered it.
+/// The drop-off plot: how many participants got an item at each position, and how many answered it.
 #[derive(Debug, Serialize)]
 pub(super) struct DropOff {
     given: String,
@@ -355,7 +356,7 @@ const HIGH: f64 = 140.0;
 const LEFT: f64 = 34.0;
 const TOP: f64 = 10.0;
 
-/// The curve of those who were given an item and answered it; `None` where nobody was given one.
+/// Computes the drop-off plot; `None` if no item was handed out.
 pub(super) fn drop_off(rows: &[Handed]) -> Option<DropOff> {
     let most = rows.iter().map(|row| row.given).max().filter(|most| *most > 0)? as f64;
     let top = 4.0 * step(most).max(1.0);

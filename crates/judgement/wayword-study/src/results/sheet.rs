@@ -1,4 +1,4 @@
-//! Files of answers, one line each, and what their columns mean.
+//! A CSV file with typed cells and described columns, and the codebook that lists the meaning of every column.
 
 use super::inert;
 use std::fmt::Write;
@@ -10,27 +10,27 @@ pub(super) struct Column {
     pub(super) meaning: String,
     /// Unit of a number; empty where it has none, or where it is text.
     pub(super) unit: &'static str,
-    /// What it can be.
+    /// Its possible values.
     pub(super) values: String,
 }
 
 /// A cell.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cell {
-    /// Nothing is known.
+    /// No value.
     Empty,
     Whole(i64),
-    /// With so many digits after the point.
+    /// A number and how many digits after the point it is written with.
     Number(f64, usize),
-    /// Text from anywhere.
+    /// Text from any source; it is escaped when it is written.
     Text(String),
 }
 
-/// A file of lines that are alike.
+/// A CSV file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sheet {
     pub(super) file: &'static str,
-    /// What a line is.
+    /// The meaning of one line of the file, as a phrase.
     pub(super) line: &'static str,
     pub(super) columns: Vec<Column>,
     pub(super) rows: Vec<Vec<Cell>>,
@@ -86,7 +86,7 @@ impl Sheet {
     }
 }
 
-/// The meaning of every column of every file.
+/// Makes the codebook: one line for every column of every file.
 pub(super) fn codebook(sheets: &[Sheet]) -> Sheet {
     let columns = vec![
         column("file", "the file", "", "a name"),

@@ -1,4 +1,4 @@
-//! The files of answers, moves, submissions and items.
+//! Fills the CSV files of answers, moves, submissions and items.
 
 use super::{
     Measure, MeasureKind, Unit,
@@ -11,7 +11,7 @@ use super::{
 use crate::{Answer, Choice, Data, Kind, Mode, Participant, SlotState, wording::Scale};
 use std::collections::BTreeMap;
 
-/// What all files are made from.
+/// The data from which all files are made.
 pub(super) struct Sources<'a> {
     pub(super) data: &'a Data,
     pub(super) names: &'a Names<'a>,
@@ -253,7 +253,7 @@ impl Sources<'_> {
     }
 }
 
-/// The figures of a walk, in the order of their columns.
+/// The cells with the metrics of a walk, in the order of their columns.
 fn walk(one: &Answered<'_>) -> impl Iterator<Item = Cell> {
     let figure = |measure: &Measure| {
         let value = one.score.as_ref().and_then(|score| measure.of_walk(score));
@@ -262,7 +262,7 @@ fn walk(one: &Answered<'_>) -> impl Iterator<Item = Cell> {
     Measure::of_walks().map(figure)
 }
 
-/// Digits after the point of a figure of a walk.
+/// Number of digits after the point for a metric of a walk.
 fn digits(measure: &Measure) -> usize {
     match (measure.kind, measure.unit) {
         (MeasureKind::Share, _) => 0,
@@ -335,7 +335,7 @@ fn word(choice: Choice) -> &'static str {
     }
 }
 
-/// What a condition is, as a word of the plan.
+/// The kind of a condition, as the plan writes it.
 pub(super) fn kind_name(kind: Kind) -> &'static str {
     match kind {
         Kind::Run => "run",

@@ -1,4 +1,4 @@
-//! The tables, the same in every format.
+//! Makes the tables of the report as text, independent of the output format; Markdown, LaTeX and the page all print these.
 
 use super::{
     Agreed, Handed, Less, Measure, Results, Version,
@@ -28,7 +28,7 @@ pub(super) struct Head {
     pub(super) is_number: bool,
 }
 
-/// A row; the first row of a group opens it.
+/// A row. `opens` marks the first row of a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Cells {
     pub(super) cells: Vec<String>,
@@ -36,7 +36,7 @@ pub(super) struct Cells {
 }
 
 impl Table {
-    /// A table whose first `texts` columns are text, and the rest numbers.
+    /// A table without rows. Its first `texts` columns contain text, the others numbers.
     fn new(title: impl Into<String>, heads: &[&str], texts: usize) -> Self {
         let head = |(at, text): (usize, &&str)| Head { text: (*text).to_owned(), is_number: at >= texts };
         Self {
@@ -52,7 +52,7 @@ impl Table {
     }
 }
 
-/// A condition's name with what it is.
+/// A condition's name, with a note if it is a control.
 pub(super) fn title(condition: &str, kind: Kind) -> String {
     let note = match kind {
         Kind::Run => "",
@@ -122,11 +122,11 @@ fn difference(measure: &Measure, less: &Less, heading: String, kind: Kind) -> [S
     ]
 }
 
-/// Shares that arXiv 2403.11487 tells of its 30 people, as counts: its 16.5 % is no share of 30, and 5 of 30 is the nearest.
+/// The shares that arXiv 2403.11487 reports for its 30 people, as counts. Its 16.5 % is not a share of 30; the nearest is 5 of 30.
 const THE_PAPER: [f64; 4] = [13.0, 25.0, 5.0, 22.0];
 const OF_PEOPLE: f64 = 30.0;
 
-/// The four questions as the paper reads them; `None` where nobody rates.
+/// The four questions evaluated as the paper does it, with the paper's own figures in the last row. `None` unless the mode is rating.
 pub(super) fn of_the_paper(results: &Results, version: &Version) -> Option<Table> {
     let find = |name: &&str| results.measures.iter().find(|measure| measure.name == *name);
     let measures: Vec<&Measure> = OF_THE_PAPER.iter().filter_map(find).collect();
@@ -161,7 +161,7 @@ pub(super) fn of_the_paper(results: &Results, version: &Version) -> Option<Table
     Some(table)
 }
 
-/// How often each level was chosen. The heads of the columns have the words of the levels, or their numbers alone.
+/// How often each level was chosen. With `in_words` the column headings have the words of the levels, else only their numbers.
 pub(super) fn levels(results: &Results, version: &Version, in_words: bool) -> Vec<Table> {
     let head = |level: u8, word: &str| if in_words { format!("{level} {word}") } else { level.to_string() };
     let table = |scale: &crate::wording::Scale| {
@@ -180,7 +180,7 @@ pub(super) fn levels(results: &Results, version: &Version, in_words: bool) -> Ve
     results.scales.iter().map(table).collect()
 }
 
-/// What comparisons say: each two conditions, and their strengths.
+/// The tables of comparisons: one row for each pair of conditions, and the strengths of the conditions.
 pub(super) fn pairs(version: &Version) -> Vec<Table> {
     let Some(pairs) = &version.pairs else { return Vec::new() };
     let heads = ["First", "Second", "Wins", "Losses", "Ties", "Both bad", "Share, %", "95 % interval", "Interval by"];
@@ -290,7 +290,7 @@ pub(super) fn agreement(version: &Version) -> Table {
     table
 }
 
-/// How many took part, by how far they came.
+/// How many participants there are, by how far they came.
 pub(super) fn submissions(results: &Results) -> Table {
     let people = &results.people;
     let lease = format!("Started, gone quiet for more than {} minutes", people.lease_s.div_ceil(60));
@@ -317,7 +317,7 @@ pub(super) fn submissions(results: &Results) -> Table {
     table
 }
 
-/// Attention checks, by those who failed any.
+/// The attention checks of each participant who failed any.
 pub(super) fn attention(results: &Results) -> Table {
     let attention = &results.people.attention;
     let mut table =
@@ -340,7 +340,7 @@ pub(super) fn attention(results: &Results) -> Table {
     table
 }
 
-/// What became of the items that were given.
+/// What became of the items that were handed out.
 pub(super) fn handed(title: &str, label: &str, rows: &[Handed]) -> Table {
     let mut table = Table::new(title, &[label, "Given", "Answered", "Went back", "Still out", "Seconds (median)"], 1);
     for row in rows {
@@ -361,7 +361,7 @@ pub(super) fn wording(results: &Results) -> Option<Table> {
     (!table.rows.is_empty()).then_some(table)
 }
 
-/// What each figure says.
+/// The meaning of each figure.
 pub(super) fn meanings(results: &Results) -> Table {
     let mut table = Table::new("What is measured", &["Figure", "Name in files", "Meaning"], 3);
     for measure in results.measures {
@@ -370,7 +370,7 @@ pub(super) fn meanings(results: &Results) -> Table {
     table
 }
 
-/// The conditions with what they are and where their texts come from.
+/// The conditions: their kinds, and the sources of their texts.
 pub(super) fn conditions(results: &Results) -> Table {
     let mut table = Table::new("Conditions", &["Condition", "Texts", "Answers", "Persons", "Routes"], 2);
     let [everybody, _] = &results.versions;

@@ -1,4 +1,5 @@
-//! The figures by one rule of whose answers count.
+//! Computes the figures of all conditions under one rule of which participants count. The report has two versions: all participants,
+//! and only those who finished and passed the attention checks.
 
 use super::{
     LEVEL,
@@ -13,12 +14,12 @@ use wayword_metrics::{
     Agreement, Answer, Difference, Figure, Interval, agreement, mean, mean_difference, share, share_difference,
 };
 
-/// The figures by one rule of whose answers count.
+/// The figures under one rule of which participants count.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Version {
     /// A short name: `everybody` or `finished`.
     pub name: &'static str,
-    /// Whose answers count, in words.
+    /// Which answers count, in words.
     pub rule: &'static str,
     /// How many participants gave an answer that counts.
     pub persons: usize,
@@ -26,11 +27,11 @@ pub struct Version {
     pub answers: usize,
     /// One for each condition, in the order of the plan.
     pub rows: Vec<Row>,
-    /// Each condition minus the first one; none where texts are compared, because [`Version::pairs`] says that.
+    /// Each condition minus the first one. Empty where texts are compared; [`Version::pairs`] then has the comparisons.
     pub differences: Vec<Less>,
-    /// How far those who judged the same item agree.
+    /// How well participants who judged the same item agree.
     pub agreement: Vec<Agreed>,
-    /// What comparisons say, where texts are compared.
+    /// The results of the comparisons, where texts are compared.
     pub pairs: Option<Pairs>,
 }
 
@@ -39,17 +40,17 @@ pub struct Version {
 pub struct Row {
     /// Its name.
     pub condition: String,
-    /// What it is.
+    /// Where its texts come from.
     pub kind: Kind,
-    /// Whether it is there to compare with: people's texts, or those of another path.
+    /// Whether it is a control: people's texts, or those of another path.
     pub is_control: bool,
-    /// How many answers are about it.
+    /// How many answers it has.
     pub answers: usize,
     /// How many people gave them.
     pub persons: usize,
-    /// About how many routes.
+    /// How many routes they are about.
     pub items: usize,
-    /// The figures, by name; one that no answer has is not there.
+    /// The figures, by name. A figure without any value is left out.
     pub figures: BTreeMap<&'static str, Figure>,
     /// How often each level was chosen, by the name of the question.
     pub levels: BTreeMap<&'static str, [usize; 5]>,
@@ -66,12 +67,12 @@ pub struct Less {
     pub figures: BTreeMap<&'static str, Difference>,
 }
 
-/// How far those who judged the same item agree.
+/// How well participants who judged the same item agree on one question.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Agreed {
     /// The name of the question.
     pub name: &'static str,
-    /// Krippendorff's alpha; none where no item has two answers, or where all are the same.
+    /// Krippendorff's alpha; `None` if no item has two answers, or all answers are the same.
     pub alpha: Option<Agreement>,
 }
 
@@ -155,21 +156,21 @@ fn less(data: &Data, given: &[Given<'_>], at: usize, measures: &[Measure]) -> Le
     Less { condition: name(at), minus: name(0), figures: measures.iter().filter_map(difference).collect() }
 }
 
-/// What the answers say of a figure. Conditions share routes, so the route is the item.
+/// The values of a figure. Conditions share routes, so the route is the item for the statistics.
 fn values(given: &[&Given<'_>], measure: &Measure) -> Vec<Answer<usize, u32>> {
     let answer =
         |one: &&Given<'_>| measure.value(one).map(|value| Answer { person: one.person, item: one.route, value });
     given.iter().filter_map(answer).collect()
 }
 
-/// A figure whose interval ends where its values do.
+/// Clips the interval of a figure to the range of its values.
 fn within(mut figure: Figure, measure: &Measure) -> Figure {
     let [low, high] = measure.range;
     figure.interval = figure.interval.map(|interval| cut(&interval, low, high));
     figure
 }
 
-/// A difference whose interval ends where that of values does.
+/// Clips the interval of a difference to the range that differences of two values can have.
 fn apart(mut difference: Difference, measure: &Measure) -> Difference {
     if let [Some(low), Some(high)] = measure.range {
         difference.interval = difference.interval.map(|interval| cut(&interval, Some(low - high), Some(high - low)));

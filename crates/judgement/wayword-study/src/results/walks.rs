@@ -1,4 +1,4 @@
-//! The figures of walks.
+//! Computes the metrics of the participants' walks.
 
 use super::given::trajectory;
 use crate::{Data, Move, Route};
@@ -17,7 +17,10 @@ impl<'a> Walks<'a> {
         Self { data, scenes: BTreeMap::new() }
     }
 
-    /// The figures of a walk along a route, or why it has none.
+    /// The metrics of a walk along a route.
+    ///
+    /// # Errors
+    /// The reason why they cannot be computed.
     pub(super) fn score(&mut self, route: u32, moves: &[Move]) -> Result<Score, String> {
         let route = self.route(route)?;
         let start = route.viewpoints.first().ok_or("its route has no viewpoints")?;

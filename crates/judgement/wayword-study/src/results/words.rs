@@ -1,12 +1,12 @@
-//! Numbers as tables show them.
+//! Formats numbers, intervals and methods for the tables.
 
 use super::measure::{Measure, Unit};
 use wayword_metrics::{Interval, Method};
 
-/// What stands where there is no figure.
+/// Shown in place of a missing figure.
 pub(super) const NOTHING: &str = "–";
 
-/// A number with so many digits, with a minus as it is printed, and no minus before zero.
+/// A number with `digits` digits after the point, with a typographic minus, and without a minus before zero.
 pub(super) fn number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NOTHING.to_owned();
@@ -16,7 +16,7 @@ pub(super) fn number(value: f64, digits: usize) -> String {
     if is_zero { text.replace('-', "") } else { text.replace('-', "−") }
 }
 
-/// A value of a measure: shares in per cent.
+/// A value of a measure, in the unit in which it is shown.
 pub(super) fn value(measure: &Measure, value: f64) -> String {
     match measure.unit {
         Unit::PerCent => number(100.0 * value, 1),
@@ -37,7 +37,7 @@ pub(super) fn ends(interval: Option<&Interval>, digits: usize) -> String {
     interval.map_or_else(|| NOTHING.to_owned(), ends)
 }
 
-/// How an interval was made, as a cell of a table.
+/// The name of the method by which an interval was computed.
 pub(super) fn method(method: Method) -> &'static str {
     match method {
         Method::Wilson => "Wilson",
@@ -49,7 +49,7 @@ pub(super) fn method(method: Method) -> &'static str {
     }
 }
 
-/// The same as one letter.
+/// The method as one letter, for superscripts.
 pub(super) fn letter(method: Method) -> &'static str {
     match method {
         Method::Wilson => "w",
@@ -61,7 +61,7 @@ pub(super) fn letter(method: Method) -> &'static str {
     }
 }
 
-/// What the word for a method stands for.
+/// Explains a method in a phrase.
 pub(super) fn meaning(method: Method) -> &'static str {
     match method {
         Method::Wilson => "Wilson's interval; every person and every route occurs once",

@@ -1,4 +1,4 @@
-//! The files of the results.
+//! Writes the files of the results into a folder.
 
 use super::{Results, latex, markdown, page, sheet};
 use crate::StudyError;
@@ -40,7 +40,7 @@ impl Results {
     }
 }
 
-/// A file that is whole on disk or as it was before.
+/// Writes a file under a temporary name and renames it, so that a crash leaves either the old file or the complete new one.
 fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, StudyError> {
     let place = folder.join(name);
     let beside = folder.join(format!(".{name}.part"));

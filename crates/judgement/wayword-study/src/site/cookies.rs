@@ -1,13 +1,13 @@
-//! Two cookies: the session of somebody who takes part, and what somebody came with who has not consented yet.
+//! The two cookies of the site: the session of a participant, and, before the consent, the link by which the visitor came.
 
 use crate::store::Arrival;
 use axum::http::{HeaderMap, HeaderValue, header};
 use base64::{Engine as _, engine::general_purpose::URL_SAFE_NO_PAD};
 
-/// Longest cookie that is read.
+/// Longest cookie value that is read, bytes. Longer ones are ignored.
 const LONGEST: usize = 1024;
 
-/// The names of the cookies, and whether they go over TLS alone.
+/// Reads and writes the cookies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cookies {
     /// Whether browsers reach the site over TLS.
@@ -25,7 +25,7 @@ impl Cookies {
         value(headers, &self.name("session"))
     }
 
-    /// What somebody came with.
+    /// The link by which the visitor came, from the cookie.
     pub(super) fn arrival(self, headers: &HeaderMap) -> Option<Arrival> {
         let bytes = URL_SAFE_NO_PAD.decode(value(headers, &self.name("arrival"))?).ok()?;
         serde_json::from_slice(&bytes).ok()
@@ -36,18 +36,18 @@ impl Cookies {
         self.set("session", token, "; Max-Age=604800")
     }
 
-    /// Keeps what somebody came with, for the hour in which they read and consent.
+    /// Stores the link by which the visitor came, for the hour in which they read and consent.
     pub(super) fn set_arrival(self, arrival: &Arrival) -> Option<HeaderValue> {
         let json = serde_json::to_vec(arrival).ok()?;
         self.set("arrival", &URL_SAFE_NO_PAD.encode(json), "; Max-Age=3600")
     }
 
-    /// Removes a cookie.
+    /// Removes the arrival cookie.
     pub(super) fn drop_arrival(self) -> Option<HeaderValue> {
         self.set("arrival", "", "; Max-Age=0")
     }
 
-    /// Removes the session.
+    /// Removes the session cookie.
     pub(super) fn drop_session(self) -> Option<HeaderValue> {
         self.set("session", "", "; Max-Age=0")
     }
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_cookie_of_ours_is_nothing() {
+    fn malformed_and_oversized_cookies_are_ignored() {
         let cookies = Cookies { is_secure: false };
         for text in ["", "session=", "session", "x=y; =; ;;", "arrival=%%%"] {
             assert_eq!((cookies.session(&sent(text)), cookies.arrival(&sent(text))), (None, None), "{text}");

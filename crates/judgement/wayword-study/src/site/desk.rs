@@ -1,5 +1,7 @@
-//! One thread that writes for all requests. What waits at the same time is written as one transaction (a group commit), and nobody is
-//! told that something is kept before it is on disk.
+//! The one thread that writes to the store for all requests.
+//!
+//! Each transaction waits for the disk, which takes milliseconds. So the thread puts all requests that wait at the same time into one
+//! transaction (a group commit), and answers each of them only when the transaction is on disk.
 
 use crate::{
     store::{Book, Store},
@@ -13,25 +15,25 @@ use tokio::sync::oneshot;
 
 /// Most requests in one transaction.
 const TOGETHER: usize = 64;
-/// Most requests that wait.
+/// Most requests in the queue.
 const WAITING: usize = 1024;
 
-/// The store cannot take it now: trying again is safe.
+/// The store cannot take the request now: trying again is safe.
 #[derive(Debug)]
 pub(crate) struct Busy;
 
-/// Says what came of the work: the argument is whether it is on disk.
+/// Sends the reply to the request. The argument is true if the transaction is on disk.
 type Deliver = Box<dyn FnOnce(bool) + Send>;
 type Job = Box<dyn FnOnce(&Book<'_>) -> (bool, Deliver) + Send>;
 
-/// What is handed in.
+/// A message to the thread.
 enum Work {
     Ask(Job),
     /// Empty the log after a deletion.
     Sweep,
 }
 
-/// Where requests hand in their work. Clones share one thread, which ends with the last of them.
+/// Passes requests to the writing thread. Clones share one thread, which ends with the last of them.
 #[derive(Clone)]
 pub(crate) struct Desk {
     jobs: mpsc::SyncSender<Work>,
@@ -66,13 +68,13 @@ impl Desk {
         Ok((Self { jobs }, thread))
     }
 
-    /// Empties the log when what is under way is written, so that what was deleted stands nowhere on the disk.
+    /// Empties the database's log after the pending writes, so that deleted data remain nowhere on the disk.
     pub(crate) fn sweep(&self) {
-        // Where the queue is full, the next sweep does it.
+        // If the queue is full, the next sweep does it.
         let _ = self.jobs.try_send(Work::Sweep);
     }
 
-    /// Does something in a transaction, and returns when it is on disk. `Err(Busy)` where it is not: nothing was written.
+    /// Runs `work` in a transaction, and returns its result when that is on disk. After `Err(Busy)` nothing was written.
     pub(crate) async fn ask<T: Send + 'static>(
         &self,
         work: impl FnOnce(&Book<'_>) -> Result<T, StudyError> + Send + 'static,
@@ -82,7 +84,7 @@ impl Desk {
             let done = work(book);
             let is_good = done.is_ok();
             let deliver: Deliver = Box::new(move |is_kept| {
-                // Somebody who has gone away needs no reply.
+                // The request may have been given up, and then needs no reply.
                 let _ = reply.send(done.ok().filter(|_| is_kept));
             });
             (is_good, deliver)

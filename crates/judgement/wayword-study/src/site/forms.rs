@@ -1,4 +1,4 @@
-//! What the pages' forms send. Everything is checked here: a browser's own checks can be passed by.
+//! Reads and checks the forms that the pages send. The checks of a browser can be bypassed, so all of them are made here again.
 
 use crate::{
     store::{Given, LONGEST_TEXT},
@@ -6,13 +6,13 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// The fields of a form. Where a name is there twice, the last counts.
+/// The fields of a form. If a name occurs twice, the last one counts.
 pub(super) type Fields = BTreeMap<String, String>;
 
-/// Reads a form into what it gives.
+/// Reads the answers to the questions about the task.
 ///
 /// # Errors
-/// What is missing, in words for the participant.
+/// A message for the participant that names the missing part.
 pub(super) fn understood(fields: &Fields, questions: usize) -> Result<Given, &'static str> {
     let all = (0..questions).map(|at| number(fields, &format!("q{at}"))).collect::<Option<Vec<usize>>>();
     let attempt = number(fields, "try").unwrap_or(0);

@@ -1,4 +1,4 @@
-//! What every request passes: headers of the answer, where a form may come from, and how fast one may ask.
+//! Guards every request: sets security headers, refuses forms from other sites, and limits how fast a participant may ask.
 
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, header};
 use std::{
@@ -7,26 +7,26 @@ use std::{
     time::Instant,
 };
 
-/// Requests of a participant: so many at once, and so many for each second after that.
+/// Limit for a participant's requests: a burst, and a number for each second after that.
 const OF_PERSON: Rate = Rate { at_once: 120.0, each_second: 20.0 };
-/// Pictures of a participant: a page without script shows a whole film at once.
+/// Limit for a participant's pictures. It is higher, because a page without script loads a whole film at once.
 const OF_PICTURES: Rate = Rate { at_once: 600.0, each_second: 60.0 };
-/// Requests of everybody who has no session.
+/// Limit for the requests of all visitors without a session together.
 const OF_STRANGERS: Rate = Rate { at_once: 600.0, each_second: 100.0 };
-/// Most participants whose rate is remembered.
+/// Most entries in the limiter's tables, so that its memory is bounded.
 const REMEMBERED: usize = 20_000;
 
-/// No page loads anything from elsewhere, runs a script of its own text, or can be put into another page.
+/// Content security policy: a page loads nothing from other sites, runs no inline script, and cannot be embedded in another page.
 const POLICY: &str = "default-src 'none'; img-src 'self'; style-src 'self'; script-src 'self'; connect-src 'self'; form-action 'self'; \
                       base-uri 'none'; frame-ancestors 'none'";
 
-/// The headers of every answer.
+/// The headers of every response.
 pub(super) fn headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)> {
     let mut all = vec![
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(POLICY)),
         (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
-        // The address by which a participant came names the participant: no other site hears of it. Not `no-referrer`, with which
-        // browsers send forms without an origin.
+        // The address by which a participant came identifies the participant, so no other site may get it. Not `no-referrer`: with
+        // that, browsers send forms without an origin.
         (header::REFERRER_POLICY, HeaderValue::from_static("same-origin")),
         (header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY")),
         (header::CACHE_CONTROL, HeaderValue::from_static("no-store")),
@@ -43,7 +43,7 @@ pub(super) fn headers(is_secure: bool) -> Vec<(HeaderName, HeaderValue)> {
     all
 }
 
-/// Whether a form may have come from a page of this site. Only a browser sends these headers, and it sends them truly.
+/// Whether a form comes from a page of this site. Scripts on other sites cannot forge these headers, because the browser sets them.
 pub(super) fn is_own(headers: &HeaderMap, public: Option<&str>, scheme: &str) -> bool {
     let text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
     match (text(header::ORIGIN), text(header::HOST)) {
@@ -55,19 +55,19 @@ pub(super) fn is_own(headers: &HeaderMap, public: Option<&str>, scheme: &str) ->
     }
 }
 
-/// Whether a method changes something.
+/// Whether a request with this method changes something.
 pub(super) fn changes(method: &Method) -> bool {
     !matches!(*method, Method::GET | Method::HEAD)
 }
 
-/// Whose pace it is.
+/// The sender of a request, for the rate limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Asker {
     /// A participant.
     Person(i64),
     /// A participant's pictures.
     Pictures(i64),
-    /// Everybody who has no session.
+    /// All visitors without a session together.
     Stranger,
 }
 
@@ -81,14 +81,15 @@ impl Asker {
     }
 }
 
-/// How fast one may ask.
+/// A rate limit: the size of a burst, and the requests per second.
 #[derive(Debug, Clone, Copy)]
 struct Rate {
     at_once: f64,
     each_second: f64,
 }
 
-/// Who asks how fast. It goes by participant, never by address: a laboratory or a university has one address.
+/// Limits how fast each participant asks, by the token bucket algorithm: each request takes a token from the participant's bucket, and
+/// the bucket refills at a constant rate. It goes by participant and not by network address, which a whole university may share.
 #[derive(Debug)]
 pub(super) struct Pace {
     began: Instant,
@@ -107,12 +108,12 @@ impl Pace {
         Self { began: Instant::now(), buckets: Mutex::default(), known: Mutex::default() }
     }
 
-    /// Whether a session was good before.
+    /// Whether a session was valid before.
     pub(super) fn knows(&self, session: &str) -> bool {
         self.known.lock().unwrap_or_else(PoisonError::into_inner).contains(session)
     }
 
-    /// Remembers a session that is good.
+    /// Remembers a valid session.
     pub(super) fn remember(&self, session: String) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if known.len() >= REMEMBERED {
@@ -121,7 +122,7 @@ impl Pace {
         known.insert(session);
     }
 
-    /// Whether somebody may ask now.
+    /// Whether a request is allowed now. If so, it uses up one token.
     pub(super) fn allows(&self, asker: Asker) -> bool {
         self.allows_at(asker, self.began.elapsed().as_secs_f64())
     }
@@ -130,7 +131,7 @@ impl Pace {
         let rate = asker.rate();
         let mut buckets = self.buckets.lock().unwrap_or_else(PoisonError::into_inner);
         if buckets.len() >= REMEMBERED {
-            // Whoever has been quiet long enough to be full again need not be remembered.
+            // A bucket that has had the time to fill up again need not be remembered.
             let full_after_s = OF_PICTURES.at_once / OF_PICTURES.each_second;
             buckets.retain(|_, bucket| now_s - bucket.at_s < full_after_s);
         }

@@ -1,4 +1,4 @@
-//! Where the site listens, and how it ends.
+//! Starts the site: checks the options, listens, serves HTTP or HTTPS on each connection, and shuts down in order.
 
 use super::{
     cookies::Cookies,
@@ -29,27 +29,27 @@ use tower_service::Service as _;
 
 /// Most connections at once. More wait for one to end.
 const CONNECTIONS: usize = 1024;
-/// Most pictures that are read at once.
+/// Most picture files that are read at once.
 const PICTURES: usize = 64;
-/// How long a handshake or the head of a request may take.
+/// How long a TLS handshake or the head of a request may take.
 const HEAD: Duration = Duration::from_secs(10);
-/// How long a connection lasts. Browsers open a new one.
+/// How long a connection lasts at most. Browsers then open a new one.
 const CONNECTION: Duration = Duration::from_secs(300);
-/// How long requests may go on when the site ends.
+/// How long running requests may go on after the site was asked to stop.
 const GRACE: Duration = Duration::from_secs(5);
 /// How often the caller is asked whether to stop.
 const POLL: Duration = Duration::from_millis(100);
 /// Largest head of a request, bytes.
 const MOST_HEAD: usize = 16 * 1024;
 
-/// How the site is reached.
+/// How the site can be reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listen {
-    /// Where it listens. Port 0 takes any that is free.
+    /// The address on which it listens. Port 0 takes any free port.
     pub address: SocketAddr,
     /// Whether it speaks TLS.
     pub security: Security,
-    /// The address that participants use, as `https://study.example.org`, where another server stands before this one.
+    /// The address that participants use, as `https://study.example.org`, if another server forwards their requests to this one.
     pub public: Option<String>,
 }
 
@@ -58,7 +58,7 @@ pub struct Listen {
 pub enum Security {
     /// It does not, and listens on this machine alone.
     Loopback,
-    /// It does not, and others in the network can read along. The user asked for it.
+    /// It does not, and others in the network can read along. Only if the user asks for it.
     InsecureLan,
     /// By a certificate and a key.
     Tls {
@@ -67,20 +67,20 @@ pub enum Security {
         /// Its private key, PEM.
         key: PathBuf,
     },
-    /// By a certificate that the study makes for itself; browsers warn of it.
+    /// By a self-signed certificate that the study makes; browsers warn of it.
     SelfSigned,
 }
 
-/// A site that listens.
+/// The addresses of a running site.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Started {
-    /// Where it listens.
+    /// The address on which it listens.
     pub address: SocketAddr,
-    /// What participants open, without a slash at the end.
+    /// The URL that participants open, without a slash at the end.
     pub url: String,
 }
 
-/// Shows a study to people until `should_stop` says so; `started` is called once it listens. Requests that are under way are ended first.
+/// Serves a study until `should_stop` returns true. It calls `started` once it listens, and finishes running requests before it ends.
 ///
 /// # Errors
 /// When the settings forbid it, the address cannot be had, or a file cannot be used.
@@ -158,13 +158,13 @@ fn check(study: &Study, listen: &Listen) -> Result<(), StudyError> {
     Ok(())
 }
 
-/// The address that a participant's browser can open: of `0.0.0.0`, this machine's own in its network.
+/// The address that a participant's browser can open. For `0.0.0.0` this is the address of this machine in its network.
 fn host(listen: IpAddr) -> IpAddr {
     if !listen.is_unspecified() {
         return listen;
     }
-    // Connecting a datagram socket sends nothing; it asks the system which of its addresses it would use. The address is one that
-    // is reserved for documents (RFC 5737).
+    // Connecting a UDP socket sends no packet; it only makes the system choose which of its own addresses it would send from. The
+    // target is an address reserved for documentation (RFC 5737).
     let own = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
         .and_then(|socket| socket.connect(("192.0.2.1", 9)).and_then(|()| socket.local_addr()));
     own.map_or(IpAddr::V4(Ipv4Addr::LOCALHOST), |own| own.ip())
@@ -219,7 +219,7 @@ async fn converse(stream: TcpStream, acceptor: Option<TlsAcceptor>, router: Rout
     }
 }
 
-/// HTTP on one connection. What goes wrong on it is the client's, and is told to nobody.
+/// Serves HTTP on one connection. Errors on it are the client's and are not reported.
 async fn speak(
     stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
     router: Router,

@@ -1,4 +1,4 @@
-//! The site that participants see. The async runtime lives here alone.
+//! The web site that participants see. The async runtime is used in this folder alone.
 
 mod cookies;
 mod desk;

@@ -1,4 +1,4 @@
-//! The pages: templates, and what they are given. Nothing here says whose text it is or where the path leads.
+//! Renders the pages from templates. No value that a template receives reveals the condition of a text or the goal of a path.
 
 use super::{forms::Fields, ways::ways};
 use crate::{
@@ -26,35 +26,36 @@ const TEMPLATES: [(&str, &str); 13] = [
     ("withdraw.html", include_str!("pages/withdraw.html")),
 ];
 
-/// All pages of a study.
+/// The templates of all pages.
 pub(super) struct Pages {
     templates: Environment<'static>,
 }
 
-/// A page with its values.
+/// The name of a template with the values to fill in.
 #[derive(Debug)]
 pub(super) struct Page {
     name: &'static str,
     values: Value,
 }
 
-/// What all pages of a participant share.
+/// Values that all pages of a participant have.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Around {
-    /// A mark of the person, which is no secret.
+    /// A public mark of the person, see [`mark`].
     pub(super) who: Option<String>,
-    /// What is missing.
+    /// A message about a missing or wrong field.
     pub(super) error: Option<&'static str>,
-    /// What was filled in when something was missing.
+    /// The fields as they were filled in, if one of them was missing or wrong.
     pub(super) given: Option<Fields>,
 }
 
-/// A mark of a person for the pages: the same in each session, so that an answer that waits in a browser finds its way.
+/// A public mark of a person for the pages. It is the same in each session, so an answer that was kept in the browser can still be
+/// sent after the participant has come in again.
 pub(super) fn mark(name: &str) -> String {
     hash(&["mark", name])[..8].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The version of what is consented to: it changes with the words.
+/// A short hash of the consent text. A changed text has another version.
 pub(super) fn consent_version(study: &Study) -> String {
     hash(&study.settings.consent_words())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -111,17 +112,17 @@ impl Page {
         Self::new(study, "consent", around, false, own)
     }
 
-    /// A message and nothing to do.
+    /// A page with a message only.
     pub(super) fn message(study: &Study, heading: &str, text: &str, retry: bool) -> Self {
         Self::new(study, "message", &Around::default(), false, context! { heading, text, retry })
     }
 
-    /// The page before somebody stops.
+    /// The page that asks a participant who wants to stop what shall happen to the answers.
     pub(super) fn withdraw(study: &Study, around: &Around) -> Self {
         Self::new(study, "withdraw", around, false, Value::UNDEFINED)
     }
 
-    /// The end for somebody who did not consent, or whose answers were deleted.
+    /// The last page for visitors who did not consent, and for participants after their answers were deleted.
     pub(super) fn gone(study: &Study, has_consented: bool) -> Self {
         let outcome = if has_consented { "withdrawn" } else { "no_consent" };
         let code = if has_consented { "" } else { study.settings.codes.no_consent.as_str() };
@@ -148,7 +149,7 @@ impl Page {
         Self::end(study, around, name, code, outcome.answers, true)
     }
 
-    /// The page of where a participant is.
+    /// The page for the stage that a participant has reached.
     pub(super) fn of_stage(book: &Book<'_>, person: i64, around: &Around) -> Result<Self, StudyError> {
         let study = book.study();
         let stage = book.stage(person)?;
@@ -220,7 +221,7 @@ impl Page {
     }
 }
 
-/// A text in runs of words, those that are marked with their numbers and with what may stand there instead.
+/// Splits a text into runs of words. A marked run has its number, grade and alternatives.
 fn marked(told: &Told) -> Value {
     let mut number = 0;
     let runs = parts(&told.text, &told.marks, |mark| mark.span).into_iter();
@@ -236,7 +237,7 @@ fn marked(told: &Told) -> Value {
     context! { runs, marks => number }
 }
 
-/// Where a walker stands and looks, and where the ways go.
+/// The values for a walker's page: the place, the viewing direction and the ways on.
 fn standing(held: &Held, route: &Route, scene: &Scene) -> Option<Value> {
     let (here, facing) = stand(held, route, scene)?;
     let place = scene.places.get(here)?;
@@ -250,7 +251,7 @@ fn standing(held: &Held, route: &Route, scene: &Scene) -> Option<Value> {
     })
 }
 
-/// The place, and the direction of the last step: at the start, where the path's walker looks.
+/// The viewpoint of the walker and the direction of the last step; at the start, the start heading of the path.
 fn stand<'a>(held: &'a Held, route: &'a Route, scene: &Scene) -> Option<(&'a ViewpointId, Heading)> {
     let start = route.viewpoints.first()?;
     let Some(here) = held.moves.last() else { return Some((start, route.start_heading)) };
@@ -264,7 +265,7 @@ fn progress(done: Done) -> Value {
     context! { where => context! { done => done.answered, of => done.expected }, break_offered => is_half }
 }
 
-/// How it works, in short steps.
+/// The steps of the task, for the page before the first item.
 fn steps(study: &Study) -> Vec<&'static str> {
     let practice = "The first one is for practice. It does not count.";
     match study.plan.mode {
@@ -301,7 +302,7 @@ fn steps(study: &Study) -> Vec<&'static str> {
     }
 }
 
-/// What an arrival that leads nowhere is told.
+/// The message page for an arrival that may not take part.
 pub(super) fn refused(study: &Study, entry: &Entry) -> Page {
     let (heading, text, retry) = match entry {
         Entry::Twice => (

@@ -1,4 +1,7 @@
-//! What is answered at which address.
+//! The routes of the site: which function answers at which address.
+//!
+//! Requests without a session lead to the consent page or to a message. All others end in the page of the participant's stage: a
+//! form is stored, and the browser is redirected to `/`, which shows that page. So a reload never sends a form twice.
 
 use super::{
     cookies::Cookies,
@@ -26,33 +29,33 @@ use tokio::sync::Semaphore;
 
 /// Longest body of a form, bytes.
 const MOST_BYTES: usize = 16 * 1024;
-/// How long a request may take, its body included.
+/// How long a request may take, including its body.
 const PATIENCE: Duration = Duration::from_secs(15);
-/// What MTurk gives for an assignment while a worker only looks.
+/// The assignment id that MTurk sends while a worker only previews a task.
 const PREVIEW: &str = "ASSIGNMENT_ID_NOT_AVAILABLE";
 /// Seconds after which to try again.
 const AGAIN: HeaderValue = HeaderValue::from_static("1");
 
-/// What every request needs.
+/// Shared state of all requests.
 pub(super) struct Site {
     pub(super) study: Arc<Study>,
     pub(super) desk: Desk,
     pub(super) pages: Pages,
     pub(super) cookies: Cookies,
     pub(super) pace: Pace,
-    /// How many pictures are read at once: memory is bounded by it.
+    /// Limits how many pictures are read at once, and so how much memory they take.
     pub(super) readers: Semaphore,
-    /// The address that participants use, where it is not the one that the site listens on.
+    /// The address that participants use, if it is not the one that the site listens on.
     pub(super) public: Option<String>,
-    /// `http` or `https`, as the site is spoken to.
+    /// `http` or `https`, as the site itself is reached.
     pub(super) scheme: &'static str,
 }
 
 type Shared = State<Arc<Site>>;
-/// The address of a picture; one that is no text has no page of its own.
+/// Slot and file name in the address of a picture, or why they could not be read.
 type SlotFile = Result<Path<(String, String)>, PathRejection>;
 
-/// All addresses.
+/// Builds the router with all addresses.
 pub(super) fn router(site: Arc<Site>) -> Router {
     Router::new()
         .route("/", get(place))
@@ -78,7 +81,7 @@ pub(super) fn router(site: Arc<Site>) -> Router {
         .with_state(site)
 }
 
-/// Headers, origin and patience, for every request.
+/// Wraps every request: checks the origin of forms, limits the time, and adds the security headers.
 async fn guard(State(site): Shared, request: Request, next: Next) -> Response {
     let is_foreign =
         gate::changes(request.method()) && !gate::is_own(request.headers(), site.public.as_deref(), site.scheme);
@@ -96,7 +99,7 @@ async fn guard(State(site): Shared, request: Request, next: Next) -> Response {
     response
 }
 
-/// Why there is no page for a request.
+/// Why a request gets an error page.
 #[derive(Debug, Clone, Copy)]
 enum Problem {
     Missing,
@@ -181,7 +184,7 @@ fn shown(site: &Site, status: StatusCode, page: &Page) -> Response {
     }
 }
 
-/// To the clean address, with cookies.
+/// Redirects to `/` and sets cookies.
 fn onwards(cookies: impl IntoIterator<Item = Option<HeaderValue>>) -> Response {
     let mut response = (StatusCode::SEE_OTHER, [(header::LOCATION, HeaderValue::from_static("/"))]).into_response();
     for cookie in cookies.into_iter().flatten() {
@@ -198,14 +201,15 @@ fn ended(result: Result<Response, Problem>, site: &Site) -> Response {
     result.unwrap_or_else(|problem| problem.page(site))
 }
 
-/// Who asks; strangers and participants each have their pace.
+/// Finds the participant who asks, and applies the rate limit of participants or of strangers.
 async fn who(site: &Site, headers: &HeaderMap) -> Result<Option<(i64, String)>, Problem> {
     let found = known(site, headers).await?;
     let asker = found.as_ref().map_or(Asker::Stranger, |(person, _)| Asker::Person(*person));
     if site.pace.allows(asker) { Ok(found) } else { Err(Problem::Fast) }
 }
 
-/// Whose session it is, with the person's mark. A cookie that was never good has the strangers' pace before anything is looked up.
+/// The participant of a session and the person's mark. For a cookie that was never valid, the strangers' rate limit is applied before
+/// the database is asked.
 async fn known(site: &Site, headers: &HeaderMap) -> Result<Option<(i64, String)>, Problem> {
     let session = site.cookies.session(headers).filter(|session| is_token(session));
     Ok(match session {
@@ -229,7 +233,7 @@ async fn person(site: &Site, headers: &HeaderMap) -> Result<(i64, Around), Probl
     Ok((person, Around { who: Some(mark), ..Around::default() }))
 }
 
-/// The page of where this person is.
+/// Answers `/`: the page of the participant's stage, the consent page for a new arrival, or a message.
 async fn place(State(site): Shared, headers: HeaderMap) -> Response {
     let page = async {
         if let Some((person, mark)) = who(&site, &headers).await? {
@@ -260,7 +264,7 @@ async fn standing(site: &Site, person: i64, around: Around, status: StatusCode) 
     }
 }
 
-/// Leads somebody on who came by a link.
+/// Answers an arrival: opens a session for a participant, and shows a message otherwise.
 fn entered(site: &Site, entry: Entry) -> Response {
     match entry {
         Entry::Back(session) => onwards([site.cookies.set_session(&session), site.cookies.drop_arrival()]),
@@ -281,7 +285,7 @@ async fn arrive(site: &Site, arrival: Arrival) -> Result<Response, Problem> {
     }
     let asked = arrival.clone();
     Ok(match site.desk.ask(move |book| book.enter(&asked)).await? {
-        // A session of somebody else on this machine ends here. Where the study is full, the page asks again.
+        // This ends the session of another person on the same machine. If the study is full, the page at `/` tries again.
         Entry::New | Entry::Full => onwards([site.cookies.set_arrival(&arrival), site.cookies.drop_session()]),
         entry => entered(site, entry),
     })
@@ -293,7 +297,7 @@ async fn personal(State(site): Shared, token: Result<Path<String>, PathRejection
     ended(arrive(&site, Arrival::Link(token)).await, &site)
 }
 
-/// A recruiter's link: its ids leave the address at once.
+/// A recruiter's link. Its ids go into a cookie and out of the address at once, so that the browser's history does not show them.
 async fn join(State(site): Shared, Query(query): Query<BTreeMap<String, String>>) -> Response {
     let Recruiter::Parameters { person, session, study, .. } = &site.study.settings.recruiter else {
         return Problem::Missing.page(&site);
@@ -317,7 +321,7 @@ async fn fields(request: Request) -> Result<(HeaderMap, Fields), Problem> {
     }
 }
 
-/// Whether the page belongs to the session that sends it: on a shared machine an old tab may be somebody else's.
+/// Whether the form belongs to the session that sends it. On a shared machine, an old tab may belong to another participant.
 fn is_of(fields: &Fields, around: &Around) -> bool {
     fields.get("who").is_none_or(|who| around.who.as_ref() == Some(who))
 }
@@ -331,7 +335,7 @@ async fn consent(State(site): Shared, request: Request) -> Response {
         let arrival = site.cookies.arrival(&headers).ok_or(Problem::NoSession)?;
         if fields.get("agree").map(String::as_str) != Some("yes") {
             let mut response = shown(&site, StatusCode::OK, &Page::gone(&site.study, false));
-            // The next person at this machine is somebody else.
+            // The next visitor at this machine is another person.
             if let Some(cookie) = site.cookies.drop_arrival() {
                 response.headers_mut().append(header::SET_COOKIE, cookie);
             }
@@ -348,7 +352,7 @@ async fn consent(State(site): Shared, request: Request) -> Response {
     ended(done.await, &site)
 }
 
-/// Keeps what a form gives. Where something is missing, the page comes again and says so.
+/// Stores the input of a form. If a field is missing, the page is shown again with a message.
 async fn give(
     site: &Site,
     request: Request,
@@ -410,7 +414,7 @@ async fn withdraw(State(site): Shared, request: Request) -> Response {
         let (headers, fields) = fields(request).await?;
         let is_delete = fields.get("delete").map(String::as_str) == Some("yes");
         let (person, around) = match person(&site, &headers).await {
-            // The same again, after the first was done and its reply lost.
+            // The same request again: the first one was carried out, but its reply was lost.
             Err(Problem::NoSession) if is_delete => {
                 return Ok(shown(&site, StatusCode::OK, &Page::gone(&site.study, true)));
             }
@@ -454,7 +458,7 @@ async fn film(State(site): Shared, path: SlotFile, headers: HeaderMap) -> Respon
     ended(picture(&site, &headers, &file, find).await, &site)
 }
 
-/// A picture of what this person holds; the file's name comes from the study, never from the address.
+/// Sends a picture of an item that this participant has. The file's name comes from the study, and never from the address.
 async fn picture(
     site: &Site,
     headers: &HeaderMap,
@@ -473,7 +477,7 @@ async fn picture(
     let bytes = bytes.ok().and_then(Result::ok).ok_or(Problem::Fault)?;
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("image/jpeg")),
-        // A phone need not load a film twice. The address names nothing but a slot of this person's.
+        // A phone should not have to load a film twice. Caching is safe, because the address contains only a slot of this person.
         (header::CACHE_CONTROL, HeaderValue::from_static("private, max-age=3600")),
     ];
     Ok((headers, Body::from(bytes)).into_response())

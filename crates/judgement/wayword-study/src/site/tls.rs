@@ -1,4 +1,4 @@
-//! Certificates: the user's own, or one that the study makes for itself.
+//! Sets up TLS with the user's certificate, or with a self-signed one that the study makes.
 
 use crate::study::StudyError;
 use std::{fs, net::IpAddr, path::Path, sync::Arc};
@@ -10,11 +10,11 @@ use tokio_rustls::{
     },
 };
 
-/// The files of a certificate that the study makes for itself.
+/// The files of the self-signed certificate.
 const CERTIFICATE: &str = "self-signed.pem";
 const KEY: &str = "self-signed.key";
 
-/// TLS by a certificate and a key, both in PEM.
+/// TLS with a certificate and a key, both in PEM.
 ///
 /// # Errors
 /// When a file cannot be read, or the two do not fit.
@@ -37,7 +37,7 @@ pub(super) fn of_files(certificate: &Path, key: &Path) -> Result<TlsAcceptor, St
     Ok(TlsAcceptor::from(Arc::new(config)))
 }
 
-/// TLS by a certificate of the study's own, which it makes once, so that a browser that was told to trust it still does.
+/// TLS with a self-signed certificate. It is made once and then kept, so that a browser that was set to trust it goes on doing so.
 ///
 /// # Errors
 /// When it cannot be made or written.

@@ -1,26 +1,26 @@
-//! The ways on from a place, in words.
+//! Describes the ways on from a place, for the buttons of a walker.
 
 use crate::study::{Place, Scene};
 use serde::Serialize;
 use wayword_core::Heading;
 
-/// Steeper than this is stairs, radians: a ramp is flatter.
+/// A way steeper than this counts as stairs, radians. A ramp is flatter.
 const STAIRS_RAD: f64 = 0.35;
 
-/// A way on.
+/// A way to a neighbouring viewpoint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Way {
-    /// Its index among the neighbours: nothing that tells one place from another.
+    /// Its index among the neighbours. A viewpoint's name could reveal which place it is.
     pub(super) id: String,
     /// Its heading, degrees.
     pub(super) deg: f64,
-    /// In words, from where one looks.
+    /// Its direction in words, seen from the viewing direction.
     pub(super) words: String,
-    /// How far, metres.
+    /// Its length, metres.
     pub(super) metres: f64,
 }
 
-/// The ways on from a place for somebody who looks along `facing`, from the left to the right.
+/// The ways on from a place for a walker who looks along `facing`, from left to right.
 pub(super) fn ways(scene: &Scene, place: &Place, facing: Heading) -> Vec<Way> {
     let way = |(index, neighbour): (usize, &wayword_core::ViewpointId)| {
         let there = scene.places.get(neighbour)?.at();
@@ -46,7 +46,8 @@ fn round(number: f64) -> f64 {
     (number * 10.0).round() / 10.0
 }
 
-/// A turn in words. The bounds are those of turn words (`core::motion`), but finer: two doors side by side need two words.
+/// A turn in words. It uses the bounds of the turn words in `core::motion`, and finer ones, because two neighbouring doors need
+/// different words.
 fn side(turn_deg: f64) -> &'static str {
     match turn_deg.abs() {
         turn if turn < 15.0 => "ahead",
@@ -64,7 +65,7 @@ mod tests {
     use wayword_core::{SceneId, ViewpointId};
 
     #[test]
-    fn ways_go_from_left_to_right_and_say_stairs() {
+    fn ways_go_from_left_to_right_and_name_stairs() {
         let id = |name: &str| ViewpointId::new(name).unwrap();
         let place = |position: [f64; 3], neighbours: &[&str]| Place {
             position,

@@ -1,28 +1,29 @@
-//! What participants give. Each thing is kept once: the same again changes nothing, and is acknowledged again.
+//! Stores the input of participants. Each input is stored once; if a browser sends it again, nothing changes and it is acknowledged
+//! again.
 
 use super::{Book, stage::Held};
 use crate::study::{Answer, Choice, Mode, Status, StudyError};
 use rusqlite::params;
 
-/// Most steps of a walk. A path of the field has fewer than 20.
+/// Most steps of a walk. Paths of the known datasets have fewer than 20.
 pub(crate) const MOST_MOVES: usize = 200;
-/// Longest text of one's own, characters.
+/// Longest text that a participant may write, characters.
 pub(crate) const LONGEST_TEXT: usize = 1000;
-/// Most turns that are believed of a page.
+/// Upper bound on the number of turns that a page may report.
 const MOST_LOOKS: u32 = 100_000;
 
-/// What somebody gives.
+/// One input of a participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Given {
     /// The answers to the questions about the task.
     Understood { attempt: u32, answers: Vec<usize> },
-    /// A text of one's own.
+    /// A text that the participant wrote.
     OwnText { slot: String, text: String },
-    /// A step along a neighbour of the place where one stands, after `seq` steps.
+    /// A step to neighbour number `to` of the current place, after `seq` steps.
     Move { slot: String, seq: usize, to: usize },
     /// The end of a walk.
     Stop { slot: String, seq: usize, looks: u32 },
-    /// Statements after a walk.
+    /// The levels of the statements after a walk.
     Followed { slot: String, statements: [u8; 3] },
     /// The levels of a text.
     Rated { slot: String, ratings: [u8; 4] },
@@ -32,12 +33,12 @@ pub(crate) enum Given {
     Attention { number: u32, choice: u8 },
 }
 
-/// Why something is not kept.
+/// Why an input is not stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refusal {
-    /// It is not this person's, or there is no such thing.
+    /// It does not belong to this person, or does not exist.
     Unknown,
-    /// It comes before what must be done first, or after the end.
+    /// It comes before a step that must be done first, or after the end.
     OutOfTurn,
     /// The time ran out, and the item went to others.
     Returned,
@@ -48,7 +49,7 @@ pub(crate) enum Refusal {
 type Kept = Result<Result<(), Refusal>, StudyError>;
 
 impl Book<'_> {
-    /// Keeps what a person gives, once.
+    /// Stores an input of a person, once.
     pub(crate) fn give(&self, person: i64, given: Given) -> Kept {
         if self.is_closed()? {
             return Ok(Err(Refusal::Closed));
@@ -77,7 +78,7 @@ impl Book<'_> {
         }
     }
 
-    /// Does something with an item that the person holds. What was answered is acknowledged again.
+    /// Runs `work` on an item that the person has. If the item is already answered, it only acknowledges that.
     fn with(&self, person: i64, slot: &str, work: impl FnOnce(&Held) -> Kept) -> Kept {
         let Some(held) = self.named(person, slot)? else { return Ok(Err(Refusal::Unknown)) };
         match held.state.as_str() {
@@ -154,7 +155,7 @@ impl Book<'_> {
             return Ok(Err(Refusal::OutOfTurn));
         }
         if held.stopped_ms.is_none() {
-            // An old page, of a place where the walker is no more, must not end the walk.
+            // An old page, of a place that the walker has left, must not end the walk.
             if seq != held.moves.len() {
                 return Ok(Err(Refusal::OutOfTurn));
             }

@@ -1,4 +1,7 @@
-//! Who gets which item: the least filled first, nobody the same route twice, and what is left behind goes back.
+//! Decides who gets which item.
+//!
+//! Items with the fewest answers come first, and no participant gets a route twice. An item is lent for the time of a lease, which each
+//! sign of life renews. When the lease has run out, the item may go to another participant.
 
 use super::{Book, people::fresh};
 use crate::study::{Item, StudyError};
@@ -10,11 +13,11 @@ use wayword_core::seed::derive;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Filled {
     pub(super) answered: u32,
-    /// In the hands of people whose time has not run out.
+    /// Lent to people under a lease that has not run out.
     pub(super) live: u32,
 }
 
-/// How many answers an item has or may get from those who hold it.
+/// How many answers an item has, plus those that its current holders may still give.
 fn taken(filled: &BTreeMap<u32, Filled>, item: u32) -> u32 {
     filled.get(&item).map_or(0, |filled| filled.answered + filled.live)
 }
@@ -24,7 +27,8 @@ impl Book<'_> {
         i64::try_from(self.study.settings.lease_s).unwrap_or(i64::MAX / 2000).saturating_mul(1000)
     }
 
-    /// How full each item is. A lease that reaches farther than a lease can is of a clock that was set back: it has run out.
+    /// How full each item is. A lease that ends later than one that begins now was written before the clock was set back; it counts as
+    /// run out.
     pub(super) fn filled(&self) -> Result<BTreeMap<u32, Filled>, StudyError> {
         let mut count = self.db.prepare_cached(
             "SELECT item, sum(state = 'answered'), sum(state = 'live' AND lease_ms BETWEEN ?1 + 1 AND ?2) FROM slot \
@@ -36,7 +40,7 @@ impl Book<'_> {
         Ok(counts.collect::<Result<_, _>>()?)
     }
 
-    /// How many items one more person would find, when all who are at it go on to their end: each on a route of its own.
+    /// How many items, each on another route, would be left for one more person if all current participants finish.
     pub(super) fn room(&self) -> Result<u32, StudyError> {
         let filled = self.filled()?;
         let per_item = self.study.plan.per_item;
@@ -63,8 +67,8 @@ impl Book<'_> {
         Ok(true)
     }
 
-    /// Gives a person the next item: among those that are least filled one whose condition the person had least, and among
-    /// these one by the seed. `false` where nothing is left for this person.
+    /// Gives a person the next item: among the least filled ones, one of the condition that the person has had least often, and among
+    /// these one by the seed. Returns false if no item is left for this person.
     pub(super) fn hand_out_next(&self, person: i64) -> Result<bool, StudyError> {
         let filled = self.filled()?;
         let (had, name) = self.had(person)?;
@@ -88,7 +92,7 @@ impl Book<'_> {
         Ok(true)
     }
 
-    /// The items that a person had in hand so far, and the person's id in the results.
+    /// The items that a person has got so far, and the person's id in the results.
     fn had(&self, person: i64) -> Result<(Vec<&Item>, String), StudyError> {
         let name: String = self.db.query_row("SELECT name FROM person WHERE id = ?1", [person], |row| row.get(0))?;
         let mut slots = self.db.prepare_cached("SELECT item FROM slot WHERE person = ?1")?;
@@ -107,8 +111,8 @@ impl Book<'_> {
         Ok(())
     }
 
-    /// Keeps an item in a person's hands. Where the time ran out and others have filled the item, it goes back, and `false` is
-    /// returned.
+    /// Renews the lease of an item. If the lease has run out and others have filled the item meanwhile, the item is returned instead,
+    /// and the result is false.
     pub(super) fn hold(&self, slot: i64, item: u32, lease_ms: i64, is_practice: bool) -> Result<bool, StudyError> {
         let until_ms = self.now_ms + self.lease_ms();
         let is_over = lease_ms <= self.now_ms;
@@ -116,14 +120,14 @@ impl Book<'_> {
             self.db.execute("UPDATE slot SET state = 'returned' WHERE id = ?1 AND state = 'live'", [slot])?;
             return Ok(false);
         }
-        // A lease is written anew only when a tenth of it is gone: pages that are only looked at cost no write.
+        // A lease is renewed only when a tenth of it is gone, so that merely loading pages causes no writes.
         if is_over || until_ms - lease_ms > self.lease_ms() / 10 {
             self.db.execute("UPDATE slot SET lease_ms = ?2 WHERE id = ?1", params![slot, until_ms])?;
         }
         Ok(true)
     }
 
-    /// What a person holds goes back.
+    /// Returns all items that a person has not answered.
     pub(super) fn give_back(&self, person: i64) -> Result<(), StudyError> {
         self.db.execute("UPDATE slot SET state = 'returned' WHERE person = ?1 AND state = 'live'", [person])?;
         Ok(())

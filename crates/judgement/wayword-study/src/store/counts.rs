@@ -1,4 +1,4 @@
-//! How far a study is.
+//! Counts how far a study is, for `study status`.
 
 use super::{Book, people};
 use crate::study::{Status, StudyError};
@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 /// How far a study is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Progress {
-    /// Whether it takes no more answers.
+    /// Whether it is closed and accepts no more answers.
     pub is_closed: bool,
-    /// One row for each condition; in pairs for each pair of conditions.
+    /// One row for each condition; where texts are compared, for each pair of conditions.
     pub rows: Vec<Row>,
     /// How many participants there are of each status.
     pub participants: BTreeMap<Status, u32>,
@@ -19,7 +19,7 @@ pub struct Progress {
     pub live: u32,
     /// How many were forgotten.
     pub forgotten: u64,
-    /// Personal links that nobody has used.
+    /// Personal links that have not been used.
     pub unused_links: u32,
 }
 
@@ -30,11 +30,11 @@ pub struct Row {
     pub condition: String,
     /// How many items.
     pub items: u32,
-    /// How many answers they shall have.
+    /// How many answers they shall have in total.
     pub wanted: u32,
     /// How many they have.
     pub answered: u32,
-    /// How many items are in the hands of people.
+    /// How many items are lent to people at the moment.
     pub live: u32,
     /// The fewest answers of an item, and the most.
     pub answered_per_item: (u32, u32),

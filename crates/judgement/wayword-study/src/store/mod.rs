@@ -1,4 +1,5 @@
-//! What people gave: one SQLite file. Everything that is said to be kept is on disk.
+//! The database of a study, one SQLite file with everything that participants gave. Whatever was acknowledged to a participant is on
+//! disk.
 
 mod answers;
 mod assign;
@@ -49,7 +50,7 @@ impl Store {
         // An answer that was acknowledged survives a loss of power.
         db.pragma_update(None, "synchronous", "FULL")?;
         db.pragma_update(None, "foreign_keys", true)?;
-        // What is forgotten is overwritten, not only unlinked.
+        // Deleted data are overwritten, and not only unlinked.
         db.pragma_update(None, "secure_delete", true)?;
         let version: i64 = db.pragma_query_value(None, "user_version", |row| row.get(0))?;
         if version > VERSION {
@@ -64,10 +65,10 @@ impl Store {
         Ok(Self { db })
     }
 
-    /// Does something as one transaction: all of it is kept, or nothing.
+    /// Runs `work` as one transaction: all its changes are kept, or none.
     ///
     /// # Errors
-    /// What `work` returns, or what SQLite says.
+    /// The error of `work`, or of SQLite.
     pub(crate) fn write<T>(
         &mut self,
         study: &Study,
@@ -80,10 +81,10 @@ impl Store {
         Ok(done)
     }
 
-    /// Reads at one moment, without keeping others from writing.
+    /// Runs `work` on a snapshot of the database, while others can go on writing.
     ///
     /// # Errors
-    /// What `work` returns, or what SQLite says.
+    /// The error of `work`, or of SQLite.
     pub(crate) fn read<T>(
         &mut self,
         study: &Study,
@@ -94,17 +95,17 @@ impl Store {
         work(&Book { db: &transaction, study, now_ms })
     }
 
-    /// Empties the log, so that what was deleted stands nowhere on the disk. Others who read at the moment can hinder it; then the next
+    /// Empties the write-ahead log, so that deleted data remain nowhere on the disk. A concurrent reader can prevent this; then the next
     /// sweep does it.
     pub(crate) fn sweep(&self) {
         let _ = self.db.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()));
     }
 
-    /// Does several things as one transaction, with one wait for the disk. `work` says of each whether it is kept: one that failed takes
-    /// nothing of the others with it.
+    /// Runs `work` for several requests as one transaction, with one wait for the disk. `work` returns for each request whether its
+    /// changes are kept; a failed request does not undo the others.
     ///
     /// # Errors
-    /// What SQLite says; then nothing at all is kept.
+    /// The error of SQLite; then no change at all is kept.
     pub(crate) fn together<T>(
         &mut self,
         study: &Study,
@@ -131,7 +132,7 @@ pub fn now_ms() -> i64 {
     i64::try_from(passed.as_millis()).unwrap_or(i64::MAX)
 }
 
-/// The database inside a transaction, at a time: all that can be read and written stands on it.
+/// The database inside a transaction, with the time of the request. All reading and writing goes through its methods.
 pub(crate) struct Book<'a> {
     db: &'a Connection,
     study: &'a Study,
@@ -139,7 +140,7 @@ pub(crate) struct Book<'a> {
 }
 
 impl Book<'_> {
-    /// The study whose database it is.
+    /// The study to which the database belongs.
     pub(crate) fn study(&self) -> &Study {
         self.study
     }
@@ -162,7 +163,7 @@ impl Book<'_> {
         Ok(self.meta("exports")?.and_then(|folders| serde_json::from_str(&folders).ok()).unwrap_or_default())
     }
 
-    /// Remembers one of them.
+    /// Remembers a folder to which results were written.
     pub(crate) fn note_export(&self, folder: &Path) -> Result<(), StudyError> {
         let mut folders = self.exports()?;
         if !folders.iter().any(|known| known == folder) {
@@ -172,7 +173,7 @@ impl Book<'_> {
         self.set_meta("exports", &serde_json::json!(folders).to_string())
     }
 
-    /// Whether the study takes no more answers.
+    /// Whether the study is closed and accepts no more answers.
     pub(crate) fn is_closed(&self) -> Result<bool, StudyError> {
         Ok(self.meta("closed_ms")?.is_some())
     }

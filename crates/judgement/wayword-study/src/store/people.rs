@@ -1,4 +1,4 @@
-//! Who takes part: arrival, consent, the way back in, and the way out.
+//! The participants: how they arrive, consent, come back, stop, and are forgotten.
 
 use super::{Book, stage::Stage};
 use crate::{
@@ -8,25 +8,25 @@ use crate::{
 use rusqlite::{OptionalExtension as _, Row, params};
 use serde::{Deserialize, Serialize};
 
-/// How long a session lasts, milliseconds. Then the link leads in again.
+/// How long a session lasts, milliseconds. After that, the participant's link opens a new one.
 const SESSION_MS: i64 = 7 * 24 * 3600 * 1000;
-/// Most sessions of one person; the oldest end.
+/// Most sessions of one person. A further one ends the oldest.
 const SESSIONS: i64 = 8;
-/// Longest id of a recruiter.
+/// Longest id from a recruiter, bytes.
 const LONGEST_ID: usize = 128;
 
-/// What somebody comes with.
+/// The link by which a visitor came.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Arrival {
     /// A personal link.
     Link(String),
-    /// A recruiter's.
+    /// A recruiter's link.
     Recruit { person: String, study: String, session: String },
 }
 
 impl Arrival {
-    /// Whether it has the form that links have.
+    /// Whether its parts have the form of tokens and ids, which the site accepts.
     pub(crate) fn is_plain(&self) -> bool {
         let is_id = |id: &str| {
             id.len() <= LONGEST_ID
@@ -51,15 +51,15 @@ impl Arrival {
 /// Where an arrival leads.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Entry {
-    /// To where the person was, in a new session.
+    /// To the stage that the person had reached, in a new session with this token.
     Back(String),
-    /// To the consent.
+    /// To the consent page.
     New,
-    /// Nowhere: nobody made this link, or it is another study's.
+    /// Nowhere: the link is unknown, or belongs to another study.
     Unknown,
     /// Nowhere: the same person came by another link of the recruiter before.
     Twice,
-    /// Nowhere: the person had everything deleted.
+    /// Nowhere: the person had all data deleted.
     Gone,
     /// Nowhere at the moment: all places are taken.
     Full,
@@ -67,14 +67,14 @@ pub(crate) enum Entry {
     Closed,
 }
 
-/// How it ended for a participant.
+/// How a participation ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Outcome {
     pub(crate) status: Status,
     pub(crate) answers: u32,
 }
 
-/// What happens to the answers of somebody who stops.
+/// What happens to the answers of a participant who stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Withdrawal {
     Keep,
@@ -84,7 +84,7 @@ pub(crate) enum Withdrawal {
 /// Personal links that were made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Invited {
-    /// Tokens: a link is the site's address, `/t/` and a token. They are not kept, only their hashes are.
+    /// One token for each link. A link is the site's address, `/t/` and a token. The database has only hashes of the tokens.
     pub tokens: Vec<String>,
 }
 
@@ -97,7 +97,7 @@ pub struct Forgotten {
     pub answers: u32,
     /// How many items in all, answered or not.
     pub items: u32,
-    /// Whether it was done.
+    /// Whether they were deleted, or only counted.
     pub is_done: bool,
 }
 
@@ -114,7 +114,7 @@ impl Book<'_> {
         Ok(Invited { tokens })
     }
 
-    /// Where an arrival leads. Nothing is written but the session of somebody who is known.
+    /// Decides where an arrival leads. This writes only the new session of a known participant.
     pub(crate) fn enter(&self, arrival: &Arrival) -> Result<Entry, StudyError> {
         if !arrival.is_plain() {
             return Ok(Entry::Unknown);
@@ -152,7 +152,7 @@ impl Book<'_> {
         Ok(if self.room()? >= least.min(self.study.plan.per_participant) { Entry::New } else { Entry::Full })
     }
 
-    /// Takes somebody in who consented to the text with this hash. The same arrival again leads to the same person.
+    /// Admits a person who consented to the text with this hash. If the arrival is known already, it leads to the same person.
     pub(crate) fn consent(&self, arrival: &Arrival, consent: &str) -> Result<Entry, StudyError> {
         let entry = self.enter(arrival)?;
         if entry != Entry::New {
@@ -169,7 +169,7 @@ impl Book<'_> {
                 consent,
                 self.now_ms,
                 self.study.settings.questions.is_empty(),
-                // Nobody is promised more than there is.
+                // Near the end of a study, a participant is promised only as many items as are left.
                 self.room()?.min(self.study.plan.per_participant)
             ],
         )?;
@@ -181,7 +181,7 @@ impl Book<'_> {
         Ok(Entry::Back(self.session_for(person)?))
     }
 
-    /// Whose session it is, with the person's id in the results, and a sign of life.
+    /// The person of a session, with the person's id in the results. Also records a sign of life.
     pub(crate) fn whose(&self, session: &str) -> Result<Option<(i64, String)>, StudyError> {
         if !is_token(session) {
             return Ok(None);
@@ -192,14 +192,14 @@ impl Book<'_> {
         let found: Option<(i64, String)> =
             self.db.query_row(find, row, |row| Ok((row.get(0)?, row.get(1)?))).optional()?;
         if let Some((person, _)) = &found {
-            // A clock that was set back counts too: otherwise somebody who is here would look gone.
+            // `abs`, because after the clock was set back an active participant would otherwise look absent.
             let seen = "UPDATE person SET seen_ms = ?2 WHERE id = ?1 AND abs(seen_ms - ?2) > 1000";
             self.db.execute(seen, params![person, self.now_ms])?;
         }
         Ok(found)
     }
 
-    /// Ends the participation of somebody.
+    /// Ends a participation at the participant's own wish.
     pub(crate) fn withdraw(&self, person: i64, what: Withdrawal) -> Result<(), StudyError> {
         match what {
             Withdrawal::Delete => {
@@ -216,8 +216,8 @@ impl Book<'_> {
         }
     }
 
-    /// Removes all that somebody gave, or counts it for a dry run. `participant` is an id of ours, the recruiter's, or a
-    /// personal link.
+    /// Deletes all data of a participant, or counts them for a dry run. `participant` is our id, the recruiter's id, or a personal
+    /// link.
     pub(crate) fn forget(&self, participant: &str, is_dry: bool) -> Result<Forgotten, StudyError> {
         let token = participant.rsplit_once("/t/").map_or(participant, |(_, token)| token);
         let link = Arrival::Link(token.to_owned()).hash();
@@ -240,7 +240,7 @@ impl Book<'_> {
         Ok(Forgotten { participant: name, answers, items, is_done: !is_dry })
     }
 
-    /// Keeps somebody who had everything deleted from coming in again as a stranger, until the study is closed.
+    /// Keeps a person who had all data deleted from taking part again as a stranger, until the study is closed.
     fn bar(&self, person: i64) -> Result<(), StudyError> {
         let barred = "INSERT OR IGNORE INTO gone (hash) SELECT link FROM person WHERE id = ?1";
         self.db.execute(barred, [person])?;
@@ -271,7 +271,7 @@ impl Book<'_> {
         Ok(())
     }
 
-    /// Takes no more answers, and drops what recruiters call the participants. Returns how many are in the middle of it.
+    /// Closes the study and deletes the participants' ids at the recruiter, unless people are still answering. Returns how many are.
     pub(crate) fn close(&self, even_if_live: bool) -> Result<u32, StudyError> {
         self.end_all_done()?;
         let live = self.live()?;
@@ -279,7 +279,7 @@ impl Book<'_> {
             if !self.is_closed()? {
                 self.set_meta("closed_ms", &self.now_ms.to_string())?;
             }
-            // The hash of a recruiter's link would tell who came, to anybody who has the recruiter's list.
+            // Anyone with the recruiter's list could recompute the hash of a recruiter's link and so learn who took part.
             self.db.execute("UPDATE person SET link = randomblob(32) WHERE id IN (SELECT person FROM recruit)", [])?;
             self.db.execute("DELETE FROM recruit", [])?;
             self.db.execute("DELETE FROM gone", [])?;
@@ -287,7 +287,7 @@ impl Book<'_> {
         Ok(live)
     }
 
-    /// How many are in the middle of it.
+    /// How many participants are still answering: not finished, and seen within the lease.
     pub(crate) fn live(&self) -> Result<u32, StudyError> {
         let since_ms = self.now_ms - self.lease_ms();
         let count = "SELECT count(*) FROM person WHERE status = 'started' AND seen_ms > ?1";
@@ -303,7 +303,7 @@ impl Book<'_> {
         }
     }
 
-    /// Ends it, and says how.
+    /// Ends a participation with a status, and returns the stage at its end.
     pub(super) fn end(&self, person: i64, status: Status) -> Result<Stage, StudyError> {
         let ended = "UPDATE person SET status = ?2, finished_ms = ?3 WHERE id = ?1";
         self.db.execute(ended, params![person, status.name(), self.now_ms])?;

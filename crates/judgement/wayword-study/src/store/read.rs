@@ -1,4 +1,4 @@
-//! All that people gave, as data.
+//! Reads the whole database into [`Data`], from which the results are computed.
 
 use super::{Book, Store, people};
 use crate::study::{Data, Move, Participant, Passed, Slot, SlotState, Study, StudyError};
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use wayword_core::ViewpointId;
 
 impl Store {
-    /// The study with all that people gave, at one moment.
+    /// Reads the study with all answers, from one snapshot.
     ///
     /// # Errors
     /// When a row cannot be read.

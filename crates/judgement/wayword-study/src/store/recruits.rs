@@ -1,5 +1,5 @@
-//! What a recruiter's list says of the participants, beside what we know. Its status is imported, never assumed, and
-//! decides nothing.
+//! Compares a recruiter's list of participants with ours, so that the researcher can see whom to pay. The recruiter's status is stored
+//! next to ours and never changes it.
 
 use super::{Book, people};
 use crate::study::{Status, StudyError};
@@ -9,37 +9,37 @@ use std::{
     path::Path,
 };
 
-/// Names of the column with the participant's id: Prolific's, MTurk's, and what others use.
+/// Names of the column with the participant's id, as Prolific, MTurk and others call it.
 const PERSON: [&str; 5] = ["participant id", "participant_id", "prolific_pid", "workerid", "participant"];
 /// Names of the column with the status.
 const STATUS: [&str; 3] = ["status", "assignmentstatus", "submission status"];
 
-/// One participant in both lists.
+/// A participant in both lists.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Reconciled {
     /// The recruiter's id.
     pub recruiter_id: String,
-    /// Our id, where we know the participant.
+    /// Our id, if we know the participant.
     pub participant: Option<String>,
-    /// What we say.
+    /// Our status.
     pub ours: Option<Status>,
-    /// What the recruiter says, as in its file.
+    /// The recruiter's status, as its file has it.
     pub theirs: Option<String>,
-    /// What does not agree; `None` where all is well.
+    /// How the two disagree; `None` if they agree.
     pub problem: Option<&'static str>,
 }
 
-/// Both lists beside each other.
+/// The result of comparing both lists.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Reconciliation {
-    /// Everybody, those with a problem first.
+    /// All participants of either list, those with a problem first.
     pub rows: Vec<Reconciled>,
     /// How many have a problem.
     pub problems: usize,
 }
 
 impl Book<'_> {
-    /// Holds the recruiter's list against ours.
+    /// Compares the recruiter's list with ours.
     pub(crate) fn reconcile(&self, file: &Path) -> Result<Reconciliation, StudyError> {
         let theirs = read(file)?;
         let mut find = self.db.prepare(
@@ -55,7 +55,7 @@ impl Book<'_> {
                 "ids are dropped when a study is closed: reconcile first, then close",
             ));
         }
-        // Theirs is kept beside ours, without the id.
+        // Their status is stored next to ours, without their id.
         for (id, status) in &theirs {
             let keep =
                 "UPDATE person SET recruiter_status = ?2 WHERE id = (SELECT person FROM recruit WHERE recruit.id = ?1)";
@@ -79,7 +79,7 @@ impl Book<'_> {
     }
 }
 
-/// What does not agree. The names are Prolific's and MTurk's.
+/// How our status and theirs disagree. The names of their statuses are those of Prolific and MTurk.
 fn problem(ours: Option<Status>, theirs: Option<&str>) -> Option<&'static str> {
     let theirs = theirs.map(|status| status.trim().to_ascii_uppercase().replace(['-', '_'], " "));
     let is_paid = matches!(theirs.as_deref(), Some("APPROVED" | "AWAITING REVIEW" | "SUBMITTED"));
@@ -105,13 +105,13 @@ fn problem(ours: Option<Status>, theirs: Option<&str>) -> Option<&'static str> {
     }
 }
 
-/// A status as a word for files, whatever the recruiter's file says.
+/// A status from the recruiter's file, reduced to harmless characters.
 fn known_word(status: &str) -> String {
     let is_plain = |letter: &char| letter.is_ascii_alphanumeric() || matches!(letter, ' ' | '-' | '_');
     status.chars().filter(is_plain).take(40).collect()
 }
 
-/// Ids and statuses of a recruiter's file.
+/// Reads ids and statuses from a recruiter's file.
 fn read(file: &Path) -> Result<BTreeMap<String, String>, StudyError> {
     let wrong = |problem: String| StudyError::File {
         path: file.to_owned(),
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_does_not_agree_is_told() {
+    fn status_conflict_names_statuses_that_disagree() {
         assert_eq!(problem(Some(Status::Complete), Some("AWAITING REVIEW")), None);
         assert!(problem(Some(Status::Complete), Some("TIMED-OUT")).unwrap().contains("not done"));
         assert!(problem(Some(Status::Started), Some("APPROVED")).unwrap().contains("not complete"));

@@ -1,15 +1,15 @@
-//! Where a participant is, and what comes next. It stands in the database alone, so that a reload, a second tab and another device
-//! show the same.
+//! Finds out which stage a participant has reached and what comes next. The stage is stored only in the database, so that a reload, a
+//! second tab and another device all show the same.
 
 use super::{Book, people::Outcome};
 use crate::study::{Item, Mode, Route, Scene, Status, StudyError};
 use rusqlite::{OptionalExtension as _, params};
 use wayword_core::{ViewpointId, seed::derive};
 
-/// Levels that an attention check may ask for: not the middle one, which people choose without reading.
+/// Levels that an attention check may ask for. The middle one is left out, because people choose it without reading.
 const ASKED: [u8; 4] = [1, 2, 4, 5];
 
-/// Where a participant is.
+/// The stage that a participant has reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Stage {
     /// At the questions about the task.
@@ -22,7 +22,7 @@ pub(crate) enum Stage {
     Over(Outcome),
 }
 
-/// An item in somebody's hands.
+/// A slot of the database: an item that was handed out to a person.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Held {
     pub(super) id: i64,
@@ -39,7 +39,7 @@ pub(crate) struct Held {
     /// Whether the walker has stopped.
     pub(crate) stopped_ms: Option<i64>,
     pub(crate) looks: u32,
-    /// Where the walker went, without the start.
+    /// The viewpoints to which the walker went, without the start.
     pub(crate) moves: Vec<ViewpointId>,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Done {
 }
 
 impl Book<'_> {
-    /// Where a person is; hands out the next item where one is due, and ends it where all is answered.
+    /// The stage of a person. Hands out the next item if one is due, and ends the participation if all items are answered.
     pub(crate) fn stage(&self, person: i64) -> Result<Stage, StudyError> {
         if let Some(outcome) = self.outcome(person)? {
             return Ok(Stage::Over(outcome));
@@ -81,12 +81,13 @@ impl Book<'_> {
         }
     }
 
-    /// Ends it for somebody who has answered everything.
+    /// Ends the participation of a person who has answered everything.
     fn finish(&self, person: i64) -> Result<Stage, StudyError> {
         self.end(person, if self.has_failed_checks(person)? { Status::AttentionFailed } else { Status::Complete })
     }
 
-    /// Ends it where all is answered: whoever closes the page after the last answer is done too.
+    /// Ends the participation if everything is answered. It is called after each answer, because many people close the page after the
+    /// last one.
     pub(super) fn end_if_done(&self, person: i64) -> Result<(), StudyError> {
         let done = self.done(person)?;
         if done.answered >= done.expected && done.answered > 0 && self.check_due(person, done)?.is_none() {
@@ -95,7 +96,7 @@ impl Book<'_> {
         Ok(())
     }
 
-    /// The same for everybody.
+    /// Does the same for all participants.
     pub(super) fn end_all_done(&self) -> Result<(), StudyError> {
         let mut find = self.db.prepare("SELECT id FROM person WHERE status = 'started'")?;
         let all: Vec<i64> = find.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
@@ -109,12 +110,12 @@ impl Book<'_> {
         Ok(self.db.query_row(find, [person], |row| Ok(Done { expected: row.get(0)?, answered: row.get(1)? }))?)
     }
 
-    /// The item that a person holds.
+    /// The unanswered item that a person has.
     fn held(&self, person: i64) -> Result<Option<Held>, StudyError> {
         self.held_where("person = ?1 AND state = 'live' ORDER BY id DESC LIMIT 1", person, "")
     }
 
-    /// An item of a person by its name on pages, in any state.
+    /// A slot of a person by its name on pages, in any state.
     pub(super) fn named(&self, person: i64, slot: &str) -> Result<Option<Held>, StudyError> {
         self.held_where("person = ?1 AND name = ?2", person, slot)
     }
@@ -146,7 +147,7 @@ impl Book<'_> {
         Ok(Some(held))
     }
 
-    /// The attention check that is due after so many answers.
+    /// The attention check that is due at this point. Checks are spread evenly over the items.
     pub(super) fn check_due(&self, person: i64, done: Done) -> Result<Option<u32>, StudyError> {
         let checks = self.study.settings.attention_checks;
         let answered: u32 =
@@ -173,7 +174,7 @@ impl Book<'_> {
         Ok(self.outcome(person)?.is_some())
     }
 
-    /// The panorama where a walker stands after so many steps: only where this walker was, in what this walker holds.
+    /// The file of the panorama at the place that a walker reached after `steps` steps. Other places of the scene are not available.
     pub(crate) fn panorama(&self, person: i64, slot: &str, steps: usize) -> Result<Option<String>, StudyError> {
         let Some(held) = self.named(person, slot)? else { return Ok(None) };
         let Some((_, route, Some(scene))) = self.of(&held) else { return Ok(None) };
@@ -181,14 +182,14 @@ impl Book<'_> {
         Ok(here.and_then(|here| scene.places.get(here)).map(|place| place.panorama.clone()))
     }
 
-    /// A picture of the film of what somebody holds.
+    /// The file of a picture in the film of a person's item.
     pub(crate) fn film_picture(&self, person: i64, slot: &str, number: usize) -> Result<Option<String>, StudyError> {
         let Some(held) = self.named(person, slot)? else { return Ok(None) };
         let film = self.of(&held).map(|(_, route, _)| &route.film);
         Ok(film.and_then(|film| film.get(number)).map(|picture| picture.file.clone()))
     }
 
-    /// The item, route and scene of what somebody holds.
+    /// The item, route and scene of a slot; a scene only where people walk.
     pub(crate) fn of(&self, held: &Held) -> Option<(&Item, &Route, Option<&Scene>)> {
         let item = self.study.items.get(held.item as usize)?;
         let route = self.study.routes.get(item.route as usize)?;

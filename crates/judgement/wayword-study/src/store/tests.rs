@@ -1,4 +1,4 @@
-//! The store by a clock of the test's own.
+//! Tests of the store. They set the time themselves.
 
 use super::*;
 use crate::study::{
@@ -10,7 +10,7 @@ use wayword_core::{Heading, SceneId, ViewpointId};
 
 const HASH: &str = "consent";
 
-/// A study in a folder of its own, and a clock.
+/// A study in a temporary folder, and a clock that the test sets.
 struct Desk {
     folder: TempDir,
     study: Study,
@@ -82,7 +82,7 @@ impl Desk {
         Store::open(&self.folder.path().join("study.db")).unwrap().write(&self.study, self.now_ms, work).unwrap()
     }
 
-    /// Somebody with a link who consents.
+    /// Lets a new participant with a link consent.
     fn newcomer(&self) -> i64 {
         let token = self.ask(|book| book.invite(1)).tokens.remove(0);
         self.come(&Arrival::Link(token)).unwrap()
@@ -110,7 +110,7 @@ impl Desk {
         self.ask(|book| book.give(person, given))
     }
 
-    /// Answers what the person holds.
+    /// Answers the item that the person has.
     fn answer(&self, person: i64) -> Held {
         let held = self.held(person);
         let slot = held.slot.clone();
@@ -187,7 +187,7 @@ fn a_condition_that_a_person_had_comes_later() {
 }
 
 #[test]
-fn what_is_left_behind_goes_back() {
+fn items_of_absent_participants_go_to_others() {
     let mut desk = study(Mode::Pair, 1, 1, 1);
     let (first, second) = (desk.newcomer(), {
         desk.now_ms += 1;
@@ -202,7 +202,7 @@ fn what_is_left_behind_goes_back() {
     desk.answer(second);
     let taken = desk.held(second);
     assert_eq!(taken.item, held.item);
-    // The first comes back: the item is somebody else's now, and there is no other.
+    // The first participant comes back: the item belongs to another one now, and none is left.
     assert_eq!(desk.stage(first), Stage::Over(Outcome { status: Status::Complete, answers: 0 }));
     assert_eq!(desk.give(first, Given::Chosen { slot: held.slot, choice: Choice::A }), Err(Refusal::Returned));
     desk.answer(second);
@@ -210,7 +210,7 @@ fn what_is_left_behind_goes_back() {
 }
 
 #[test]
-fn who_comes_back_late_goes_on_where_nobody_took_the_item() {
+fn a_late_participant_goes_on_if_the_item_is_still_free() {
     let mut desk = study(Mode::Pair, 2, 1, 2);
     let person = desk.newcomer();
     desk.answer(person);
@@ -299,7 +299,7 @@ fn the_task_is_explained_twice_at_most() {
 }
 
 #[test]
-fn two_failed_attention_checks_are_told_from_none() {
+fn two_failed_attention_checks_change_the_status() {
     let mut desk = study(Mode::Pair, 4, 2, 4);
     desk.study.settings.attention_checks = 2;
     let attend = |person, is_good: bool| {
@@ -331,7 +331,7 @@ fn an_attention_check_waits_until_it_is_due() {
 }
 
 #[test]
-fn the_last_answer_is_the_end_even_if_nobody_looks() {
+fn the_last_answer_ends_the_participation_without_another_request() {
     let desk = study(Mode::Pair, 1, 1, 1);
     let person = desk.newcomer();
     desk.answer(person);
@@ -350,7 +350,7 @@ fn an_old_page_does_not_end_a_walk_elsewhere() {
 }
 
 #[test]
-fn nobody_is_promised_more_than_is_left() {
+fn consent_promises_only_the_items_that_are_left() {
     let mut desk = study(Mode::Pair, 3, 1, 2);
     let first = desk.newcomer();
     let second = desk.newcomer();
@@ -413,7 +413,7 @@ fn a_recruiters_participant_comes_in_once_and_back_by_the_same_link() {
 }
 
 #[test]
-fn the_recruiters_list_is_held_against_ours() {
+fn reconcile_compares_the_recruiters_list_with_ours() {
     let desk = by_recruiter();
     for name in ["p1", "p2"] {
         let person = desk.come(&recruit(name, "x")).unwrap();
@@ -449,7 +449,7 @@ fn a_closed_study_keeps_no_id_of_a_recruiter() {
 }
 
 #[test]
-fn what_is_forgotten_is_gone_and_its_item_is_free() {
+fn forget_deletes_the_data_and_frees_the_item() {
     let desk = by_recruiter();
     let person = desk.come(&recruit("p1", "x")).unwrap();
     desk.answer(person);
@@ -465,7 +465,7 @@ fn what_is_forgotten_is_gone_and_its_item_is_free() {
 }
 
 #[test]
-fn who_withdraws_keeps_the_choice_over_the_answers() {
+fn withdraw_keeps_or_deletes_answers_as_chosen() {
     let desk = study(Mode::Pair, 4, 1, 2);
     let (keeps, deletes) = (desk.newcomer(), desk.newcomer());
     for person in [keeps, deletes] {

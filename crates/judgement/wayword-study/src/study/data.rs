@@ -1,25 +1,25 @@
-//! What people gave.
+//! The answers of a study as data, the input of [`crate::results()`].
 
 use super::{Item, Plan, Route, Scene, Settings};
 use serde::{Deserialize, Serialize};
 use wayword_core::ViewpointId;
 
-/// A study with all that people gave: what results are made of. Ids of recruiters are not in it.
+/// A study with all answers of its participants. It does not contain ids from recruiters.
 #[derive(Debug, Clone)]
 pub struct Data {
-    /// What was fixed.
+    /// The plan, which was fixed when the study was made.
     pub plan: Plan,
-    /// How it was worded.
+    /// Wording and other settings.
     pub settings: Settings,
     /// All items, by id.
     pub items: Vec<Item>,
     /// All routes, by id.
     pub routes: Vec<Route>,
-    /// The ground that was walked; empty where nobody walks.
+    /// The scenes that people walked; empty unless the mode is following.
     pub scenes: Vec<Scene>,
-    /// Everybody who consented and was not forgotten, in order of consent.
+    /// All participants who consented and were not forgotten, in order of consent.
     pub participants: Vec<Participant>,
-    /// Items that were given to people, in order; those of practice too.
+    /// Items that were handed out, in order, including practice items.
     pub slots: Vec<Slot>,
     /// How many participants were forgotten.
     pub forgotten: u64,
@@ -27,11 +27,11 @@ pub struct Data {
     pub is_closed: bool,
 }
 
-/// How far a participant is.
+/// How far a participant has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// Has consented and not finished. Whether somebody still comes back is not known.
+    /// Has consented and not finished. The participant may still come back.
     Started,
     /// Has answered everything.
     Complete,
@@ -60,12 +60,12 @@ impl Status {
     }
 }
 
-/// Somebody who takes part.
+/// A person who takes part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Participant {
     /// A random id, made for the results.
     pub id: String,
-    /// How far.
+    /// How far the participant has come.
     pub status: Status,
     /// Unix time of consent, milliseconds.
     pub consented_ms: i64,
@@ -79,7 +79,7 @@ pub struct Participant {
     pub misunderstood: u32,
     /// Whether they were answered rightly in the end, or there are none.
     pub understood: bool,
-    /// What the recruiter said of the submission when its list was last imported.
+    /// The recruiter's status of the submission when its list was last imported.
     pub recruiter_status: Option<String>,
     /// The attention checks that were answered, in order.
     pub attention: Vec<Passed>,
@@ -87,12 +87,12 @@ pub struct Participant {
     pub expected: u32,
 }
 
-/// An attention check.
+/// The result of an attention check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Passed {
     /// Its number, from 0.
     pub number: u32,
-    /// Whether the answer that was asked for was given.
+    /// Whether the participant chose the answer that the check asked for.
     pub passed: bool,
     /// Unix time, milliseconds.
     pub at_ms: i64,
@@ -115,15 +115,15 @@ pub struct Slot {
     pub answered_ms: Option<i64>,
     /// In a pair: whether the item's second text was shown as A.
     pub is_turned: bool,
-    /// What was answered.
+    /// The answer, if there is one.
     pub answer: Option<Answer>,
-    /// A text of the participant's own, where one was asked for first.
+    /// The text that the participant wrote first, if the study asked for one.
     pub own_text: Option<String>,
-    /// Where the participant walked; the start is not in it.
+    /// The steps of the participant's walk; the start is not in it.
     pub moves: Vec<Move>,
 }
 
-/// What became of an item that was given.
+/// What became of an item that was handed out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SlotState {
@@ -131,14 +131,14 @@ pub enum SlotState {
     Live,
     /// Answered.
     Answered,
-    /// The time ran out, or the participant stopped: it went back.
+    /// The lease ran out or the participant stopped, and the item went back to the others.
     Returned,
 }
 
 /// A step of a walk.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Move {
-    /// Where it leads.
+    /// The viewpoint to which it leads.
     pub viewpoint: ViewpointId,
     /// Unix time, milliseconds.
     pub at_ms: i64,
@@ -148,28 +148,28 @@ pub struct Move {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "mode")]
 pub enum Answer {
-    /// Of a walk.
+    /// The answer after a walk.
     Follow {
-        /// How far one agrees to the three statements, 1 to 5.
+        /// Agreement with the three statements, 1 to 5.
         statements: [u8; 3],
         /// How often the participant turned to look, as the page counted.
         looks: u32,
         /// Unix time of stopping, milliseconds.
         stopped_ms: i64,
     },
-    /// Of a text.
+    /// The rating of a text.
     Rate {
         /// The levels of the four questions, 1 to 5.
         ratings: [u8; 4],
     },
-    /// Between two texts.
+    /// The choice between two texts.
     Pair {
-        /// Which one, by the sides on which they were shown.
+        /// The chosen side of the page.
         choice: Choice,
     },
 }
 
-/// Which of two texts.
+/// Which of two texts was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Choice {

@@ -1,8 +1,8 @@
-//! Why a study cannot be made, served or read.
+//! Errors of making, serving and reading a study.
 
 use std::{io, path::PathBuf};
 
-/// What went wrong, and what to do.
+/// An error with a problem and, where there is one, a hint at what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// A file operation failed.
@@ -20,7 +20,7 @@ pub enum StudyError {
     File {
         /// Which file.
         path: PathBuf,
-        /// What is wrong, and where in the file.
+        /// The problem, and its place in the file.
         problem: String,
         /// What to do.
         hint: &'static str,
@@ -28,7 +28,7 @@ pub enum StudyError {
     /// The user asked for something that cannot be done.
     #[error("{problem}\nhint: {hint}")]
     Refused {
-        /// What is wrong.
+        /// The problem.
         problem: String,
         /// What to do.
         hint: String,

@@ -1,4 +1,4 @@
-//! The folder of a study.
+//! Creates and reads the folder of a study.
 
 use super::{Item, Plan, Route, Scene, Settings, StudyError};
 use crate::store::Store;
@@ -9,39 +9,39 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What is fixed.
+/// The plan, which is fixed when the study is made.
 const PLAN: &str = "plan.json";
-/// What the researcher words.
+/// The wording, which the researcher may change.
 const SETTINGS: &str = "study.toml";
 const ITEMS: &str = "items.jsonl";
 const ROUTES: &str = "routes.jsonl";
 const SCENES: &str = "scenes.jsonl";
-/// What people gave.
+/// The answers.
 const DATABASE: &str = "study.db";
 const PICTURES: &str = "pictures";
-/// Largest file that is read.
+/// Largest file that is read, bytes.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// A study as it was made, without what people gave.
+/// A study as it was made, without the answers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     /// Its folder.
     pub folder: PathBuf,
-    /// What is fixed.
+    /// The plan, which is fixed when the study is made.
     pub plan: Plan,
-    /// How it is worded.
+    /// Wording and other settings.
     pub settings: Settings,
     /// All items, by id.
     pub items: Vec<Item>,
     /// All routes, by id.
     pub routes: Vec<Route>,
-    /// The ground that is walked.
+    /// The scenes that people walk.
     pub scenes: Vec<Scene>,
 }
 
 impl Study {
-    /// Writes a new study. Pictures are already in its folder `pictures`; the plan is written last, so a folder without one is
-    /// not a study yet.
+    /// Writes a new study. Its folder `pictures` already has the pictures. The plan is written last, so a folder without a plan is not
+    /// a complete study.
     ///
     /// # Errors
     /// When there is one already, or a file cannot be written.
@@ -110,7 +110,7 @@ impl Study {
         self.scenes.iter().find(|scene| scene.scene == route.scene)
     }
 
-    /// Items and routes are found by their number.
+    /// Checks that ids equal line numbers, because items and routes are found by index.
     fn check(&self) -> Result<(), StudyError> {
         let numbered = |name: &str, ids: Vec<u32>| match (0..).zip(&ids).find(|(number, id)| number != *id) {
             Some((number, _)) => {
@@ -137,7 +137,7 @@ impl Study {
         self.write(name, &text)
     }
 
-    /// A file that is whole on disk or not there.
+    /// Writes a file under a temporary name and renames it, so that it is complete or does not exist.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StudyError> {
         let place = self.folder.join(name);
         let beside = self.folder.join(format!(".{name}.part"));
@@ -154,7 +154,7 @@ impl Study {
     }
 }
 
-/// Lets only the owner into a folder, because people's answers will be in it.
+/// Lets only the owner into a folder, because it will contain people's answers.
 fn keep_private(folder: &Path) -> Result<(), StudyError> {
     #[cfg(unix)]
     {

@@ -1,10 +1,10 @@
-//! What people are given: texts, the routes they belong to, and the scenes that are walked.
+//! The material of a study: items with their texts, the routes that the texts describe, and the scenes that people walk.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_core::{DVec3, Doubt, Grade, Heading, SceneId, ViewpointGraph, ViewpointId, graph::GraphError};
 
-/// What one person does at a time: a route with one text, or with two where texts are compared.
+/// The unit of the participants' work: a route with one text, or with two where texts are compared.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Item {
@@ -12,14 +12,14 @@ pub struct Item {
     pub id: u32,
     /// The number of its route.
     pub route: u32,
-    /// Whether it is only for practice: everybody gets it first, and it is in no figure.
+    /// Whether it is only for practice. Each participant gets it first, and no figure includes it.
     #[serde(default)]
     pub is_practice: bool,
     /// One text; two where texts are compared.
     pub texts: Vec<Told>,
 }
 
-/// A text and the condition that it stands for.
+/// A text and the condition to which it belongs.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Told {
@@ -27,12 +27,12 @@ pub struct Told {
     pub condition: String,
     /// The instruction.
     pub text: String,
-    /// The words that are marked for those who walk by it, in the order of the text.
+    /// The words that are marked as doubtful for those who walk by the text, in the order of the text.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub marks: Vec<Mark>,
 }
 
-/// Words that are marked because a reader should doubt them.
+/// Words that are marked for the participants because a reader should doubt them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Mark {
@@ -40,7 +40,7 @@ pub struct Mark {
     pub span: [usize; 2],
     /// How much they are doubted.
     pub grade: Grade,
-    /// What may stand there instead, the best first; `None` where the words are better left out.
+    /// Replacements, the best first; `None` means that the words are better left out.
     pub alternatives: Vec<Option<String>>,
 }
 
@@ -51,7 +51,7 @@ impl From<Doubt> for Mark {
     }
 }
 
-/// A path that texts tell of.
+/// A path that texts describe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Route {
@@ -63,9 +63,9 @@ pub struct Route {
     pub scene: SceneId,
     /// The viewpoints from start to goal; empty where the path has none.
     pub viewpoints: Vec<ViewpointId>,
-    /// Where a walker looks at the start.
+    /// The heading of the walker at the start.
     pub start_heading: Heading,
-    /// What is seen along it, in order; empty where people walk by themselves.
+    /// The pictures along it, in order; empty where people walk by themselves.
     #[serde(default)]
     pub film: Vec<Picture>,
 }
@@ -76,11 +76,11 @@ pub struct Route {
 pub struct Picture {
     /// Its file in the folder `pictures`.
     pub file: String,
-    /// What stands in its place where it cannot be seen. It names no thing that only the picture shows.
+    /// The alternative text for those who cannot see it. It does not name things that only the picture shows.
     pub alt: String,
 }
 
-/// The ground that people walk.
+/// A scene that people walk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
@@ -90,15 +90,15 @@ pub struct Scene {
     pub places: BTreeMap<ViewpointId, Place>,
 }
 
-/// A viewpoint with what is seen from it.
+/// A viewpoint with its panorama and its neighbours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Place {
     /// Metres, in the world frame, at the height of the eye.
     pub position: [f64; 3],
-    /// Its storey, the lowest is 1, where it is known.
+    /// Its storey, if it is known. The lowest is 1.
     pub level: Option<u32>,
-    /// Where one can go from it.
+    /// The viewpoints to which one can walk from it.
     pub neighbours: Vec<ViewpointId>,
     /// Its panorama: a file in the folder `pictures`. North is in the middle.
     pub panorama: String,

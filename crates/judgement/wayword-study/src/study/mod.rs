@@ -1,4 +1,4 @@
-//! What a study consists of, and its folder.
+//! The parts of a study (plan, settings, items, routes, scenes, answers), and the folder that contains them.
 
 mod data;
 mod error;

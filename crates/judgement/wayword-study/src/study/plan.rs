@@ -1,14 +1,14 @@
-//! What is fixed when a study is made.
+//! The plan of a study, which is fixed when the study is made, and the file `plan.json`.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// The format of a study's folder. `plan.json` has it, and the version of the program that made the study.
+/// The format of a study's folder. `plan.json` contains it, and the version of the program that made the study.
 const FORMAT: &str = "wayword-study/1";
-/// Longest name of a format or a version that an error repeats, characters.
+/// Longest name of a format or a version that an error quotes, characters.
 const LONGEST: usize = 60;
 
-/// What people do with an item.
+/// The task of the participants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
@@ -40,7 +40,7 @@ pub enum Kind {
     Run,
     /// The people who wrote the dataset.
     People,
-    /// A text of another path in the same scene: what a wrong text reaches.
+    /// Another path in the same scene. This control shows how well a wrong text does.
     OtherPath,
 }
 
@@ -50,7 +50,7 @@ pub enum Kind {
 pub struct Condition {
     /// Its name in the results.
     pub name: String,
-    /// What it is.
+    /// Where its texts come from.
     pub kind: Kind,
     /// Where the texts come from, as the user gave it.
     pub source: String,
@@ -59,26 +59,26 @@ pub struct Condition {
     pub shows_doubts: bool,
 }
 
-/// What is fixed when a study is made, because answers under different plans cannot be put together.
+/// The part of a study that is fixed when it is made, because answers under different plans cannot be combined.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
-    /// What people do.
+    /// The task of the participants.
     pub mode: Mode,
     /// Seed of everything random but tokens.
     pub seed: u64,
-    /// How many answers each item shall have.
+    /// Planned answers of each item.
     pub per_item: u32,
     /// How many items a person gets, at most.
     pub per_participant: u32,
     /// The conditions, in the order of the tables.
     pub conditions: Vec<Condition>,
-    /// The style of the texts, whose examples the people see; empty where it is not known.
+    /// The style of the texts. Participants see examples of it. Empty if it is not known.
     pub style: String,
 }
 
 impl Plan {
-    /// The plan as `plan.json` has it.
+    /// The plan as the contents of `plan.json`.
     ///
     /// # Errors
     /// When it cannot be written as JSON.
@@ -92,10 +92,10 @@ impl Plan {
         serde_json::to_vec_pretty(&file)
     }
 
-    /// Reads `plan.json`. One without a format is of the first version, which wrote none.
+    /// Reads `plan.json`. A file without a format is of the first version, which did not write one.
     ///
     /// # Errors
-    /// When it has another format, or is no plan; the text says why.
+    /// When it has another format, or is no plan. The text gives the reason.
     pub(super) fn from_file(text: &str) -> Result<Self, String> {
         let mut file: Map<String, Value> = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let by = file.shift_remove("wayword");
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_is_read_as_it_was_written_and_so_is_one_of_before_there_were_formats() {
+    fn from_file_reads_a_written_plan_and_one_without_a_format() {
         assert!(written().starts_with("{\n  \"format\": \"wayword-study/1\",\n  \"wayword\": "), "{}", written());
         assert_eq!(Plan::from_file(&written()), Ok(plan()));
         assert_eq!(Plan::from_file(&serde_json::to_string(&plan()).unwrap()), Ok(plan()));

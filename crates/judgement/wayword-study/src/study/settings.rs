@@ -1,25 +1,25 @@
-//! `study.toml`: what the researcher words and sets.
+//! The settings of a study in `study.toml`, which the researcher may edit: wording, limits, questions and recruiter.
 
 use super::Mode;
 use serde::{Deserialize, Serialize};
 
-/// What `study.toml` says. A change counts from the next start of the site.
+/// The contents of `study.toml`. A change takes effect at the next start of the site.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// What the study is called on its pages.
+    /// The title of the study on its pages.
     pub title: String,
-    /// Whom to ask: name, institution, address. The site is not shown to others than this machine without it.
+    /// Whom participants can ask: name, institution, address. Without it, the site can be reached from this machine only.
     pub contact: String,
     /// Until when the answers are kept, in words that participants read.
     pub retention: String,
-    /// How long it takes, minutes.
+    /// How long one participant needs, minutes.
     pub minutes: u32,
     /// What participants read before they consent, one paragraph each.
     pub about: Vec<String>,
-    /// What they agree to.
+    /// The statement to which they agree.
     pub agreement: String,
-    /// Texts that show the style, to those who rate.
+    /// Example texts of the style, for those who rate.
     #[serde(default)]
     pub examples: Vec<String>,
     /// Whether those who rate write an instruction of their own before they see the one they rate.
@@ -27,20 +27,21 @@ pub struct Settings {
     pub write_first: bool,
     /// How many attention checks a participant gets, 0 to 4.
     pub attention_checks: u32,
-    /// The fewest items for which somebody new is let in. Near the end of a study fewer may be left than a participant gets.
+    /// The fewest items that must be left to admit a new participant. Near the end of a study, fewer may be left than
+    /// `per_participant`.
     #[serde(default)]
     pub least_items: u32,
-    /// The language of the texts, as `en` or `hi-IN`; empty where they are in the pages' language, English.
+    /// The language of the texts, as `en` or `hi-IN`; empty if they are in English, the language of the pages.
     #[serde(default)]
     pub text_language: String,
-    /// After how many seconds without a sign of life an item goes to somebody else.
+    /// The lease of an item: after so many seconds without a sign of life it may go to another participant.
     pub lease_s: u64,
-    /// What shows that the task was understood.
+    /// Questions that test whether a participant has understood the task.
     #[serde(default)]
     pub questions: Vec<Question>,
     /// Where participants come from.
     pub recruiter: Recruiter,
-    /// What participants take back to the recruiter.
+    /// Codes that participants take back to the recruiter.
     #[serde(default)]
     pub codes: Codes,
 }
@@ -51,7 +52,7 @@ pub struct Settings {
 pub struct Question {
     /// The question.
     pub text: String,
-    /// What can be chosen.
+    /// The answers to choose from.
     pub answers: Vec<String>,
     /// Index of the right answer.
     pub right: usize,
@@ -78,17 +79,17 @@ pub enum Recruiter {
     },
 }
 
-/// Codes that tell the recruiter how it went, and the address that takes them.
+/// Codes that inform the recruiter about the outcome, and the address to which they are sent.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Codes {
-    /// Where participants go back to, with `{code}` in the place of the code; empty shows the code alone.
+    /// The address to which participants return, with `{code}` in the place of the code; empty shows only the code.
     pub return_url: String,
     /// All items were answered.
     pub done: String,
     /// The task was not understood.
     pub screened_out: String,
-    /// All items were answered, and more attention checks failed than Prolific lets pass.
+    /// All items were answered, and more attention checks failed than Prolific tolerates.
     pub attention_failed: String,
     /// No consent was given.
     pub no_consent: String,
@@ -100,12 +101,12 @@ const LONG_MINUTES: u32 = 5;
 const MOST_ANSWERS: usize = 10;
 
 impl Settings {
-    /// How many failed attention checks say nothing yet, by Prolific's rule.
+    /// How many failed attention checks are tolerated by Prolific's rule.
     pub(crate) fn most_failed(&self) -> usize {
         usize::from(self.minutes >= LONG_MINUTES)
     }
 
-    /// All that is read before the consent.
+    /// All texts that participants read before they consent.
     pub(crate) fn consent_words(&self) -> Vec<&str> {
         let mut words: Vec<&str> = self.about.iter().map(String::as_str).collect();
         words.extend([self.agreement.as_str(), &self.title, &self.contact, &self.retention]);
@@ -150,10 +151,10 @@ impl Settings {
         }
     }
 
-    /// What is wrong with the settings, as a sentence about a field.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// The first problem.
+    /// The first problem, as a sentence about a field.
     pub fn check(&self) -> Result<(), String> {
         for question in &self.questions {
             if question.right >= question.answers.len() || question.answers.len() > MOST_ANSWERS {
@@ -239,7 +240,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_new_study_is_set_to_is_allowed() {
+    fn check_accepts_the_settings_of_a_new_study() {
         for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
             for items in [1, 2, 3, 10] {
                 Settings::of_mode(mode, items).check().unwrap();
@@ -260,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn a_check_that_could_fail_nobody_is_refused() {
+    fn check_refuses_a_single_attention_check_that_could_never_count() {
         let settings = Settings { attention_checks: 1, minutes: 5, ..Settings::of_mode(Mode::Pair, 3) };
         assert!(settings.check().unwrap_err().contains("attention_checks"));
     }

@@ -42,7 +42,7 @@ fn every_column_of_every_file_is_in_the_codebook() {
 
 /// `wayword-measure critics` reads these.
 #[test]
-fn the_files_have_what_critics_are_correlated_with() {
+fn files_have_the_columns_that_critics_are_correlated_with() {
     let of_walks = ["success", "spl", "ndtw", "easy", "confident", "demanding"];
     let of_ratings = ["similar", "accurate", "ghosts", "reachable"];
     for (mode, name, measures) in [(Mode::Follow, "follow", &of_walks[..]), (Mode::Rate, "rate", &of_ratings[..])] {
@@ -103,7 +103,7 @@ fn the_same_answers_give_the_same_files() {
 }
 
 #[test]
-fn a_folder_holds_what_the_call_tells() {
+fn write_files_returns_the_files_of_the_folder() {
     let folder = tempfile::tempdir().unwrap();
     let written = of(&small(Mode::Rate)).write(&folder.path().join("out")).unwrap();
     let mut there: Vec<_> =
@@ -118,7 +118,7 @@ fn a_folder_holds_what_the_call_tells() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Whatever people write and however many answer, the files read back, and their counts are those of the data.
+    /// For any texts and any number of answers, the files read back, and their counts are those of the data.
     #[test]
     fn exports_read_back_and_agree_with_the_data(texts in prop::collection::vec(any::<String>(), 1..8), more in 0usize..12) {
         let mut data = small(Mode::Rate);

@@ -131,7 +131,7 @@ fn sides_are_turned_back_before_wins_are_counted() {
 }
 
 #[test]
-fn where_strengths_cannot_be_known_the_reason_is_told() {
+fn strengths_that_cannot_be_computed_have_a_reason() {
     let mut data = small(Mode::Pair);
     for slot in &mut data.slots {
         if slot.answer.is_some() {

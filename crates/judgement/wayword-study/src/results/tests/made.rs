@@ -10,7 +10,7 @@ use wayword_core::{Heading, SceneId, ViewpointId, seed};
 /// Unix time at which made-up studies begin, milliseconds.
 pub(super) const START_MS: i64 = 1_780_000_000_000;
 
-/// A number below `below`, drawn by words.
+/// A number below `below` that is drawn by a hash of the words.
 pub(super) fn drawn(words: &[&str], below: u64) -> u64 {
     // The low bits of FNV vary too little.
     (seed::derive(7, words).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) % below

@@ -1,4 +1,4 @@
-//! What results must be, whatever people gave.
+//! Tests of the results: figures, exports, hostile text, and an empty study.
 
 mod exports;
 mod figures;

@@ -4,7 +4,7 @@ use super::{figures::of, made::small};
 use crate::Mode;
 
 #[test]
-fn the_page_asks_nobody_for_anything_and_runs_nothing() {
+fn page_loads_no_resources_and_runs_no_scripts() {
     for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
         let files = of(&small(mode)).files().unwrap();
         let page = &files[0].1;

@@ -25,7 +25,7 @@ fn thirty_people_in_each_group_detect_about_35_points() {
 }
 
 #[test]
-fn more_answers_find_less_and_more_differing_people_find_more_only_where_they_see_one_condition() {
+fn detectable_difference_shrinks_with_answers_and_grows_with_spread_only_between_groups() {
     for mode in [Mode::Follow, Mode::Rate, Mode::Pair] {
         let mut data = small(mode);
         let few = of(&data);
@@ -43,7 +43,7 @@ fn more_answers_find_less_and_more_differing_people_find_more_only_where_they_se
 }
 
 #[test]
-fn an_empty_plan_is_told_without_numbers_that_are_none() {
+fn outlook_of_an_empty_plan_prints_no_invalid_numbers() {
     let text = of(&empty(Mode::Follow, &[("ours", Kind::Run)])).to_string();
     assert!(!text.contains("NaN") && text.contains("participants  0"), "{text}");
 }
