@@ -1,11 +1,11 @@
-//! How far two texts for one path agree.
+//! Measures how well two texts for one path agree, from what each of them states (landmarks, turns, rooms, floors).
 
 use crate::facts::Facts;
 use serde::{Deserialize, Serialize};
 use wayword_language::lexicon::agree;
 
-/// Landmarks of two texts are the same where their names agree and their frames are no farther apart than this: a thing can be
-/// told when one sees it and when one is beside it.
+/// Landmarks of two texts match if their names agree and their frames are at most this far apart: one writer may mention a thing when
+/// it comes into view, and another one when the walker passes it.
 const FRAMES_APART: usize = 1;
 
 /// The agreement of two texts, from 0 to 1 for each kind of statement; `None` where neither has that kind.
@@ -13,16 +13,16 @@ const FRAMES_APART: usize = 1;
 pub struct Agreement {
     /// F1 of landmarks at the same frames.
     pub landmarks: Option<f64>,
-    /// 1 less the edit distance of the turns, over the longer list.
+    /// 1 minus the edit distance of the turns divided by the length of the longer list.
     pub turns: Option<f64>,
-    /// The same of the rooms.
+    /// The same for the rooms.
     pub rooms: Option<f64>,
-    /// 1 where both say the same of floors, else 0.
+    /// 1 if both state the same about floors, else 0.
     pub floors: Option<f64>,
 }
 
 impl Agreement {
-    /// The agreement of two texts. It does not matter which is first.
+    /// Compares two texts. The order does not matter.
     #[must_use]
     pub fn of(a: &Facts, b: &Facts) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl Agreement {
     }
 }
 
-/// F1 over the largest matching.
+/// F1 of the landmarks, over the largest possible matching between both lists.
 fn landmarks(a: &Facts, b: &Facts) -> Option<f64> {
     let all = a.landmarks.len() + b.landmarks.len();
     let is_same = |(name, frame): &(String, usize), (other, at): &(String, usize)| {
@@ -58,7 +58,8 @@ fn landmarks(a: &Facts, b: &Facts) -> Option<f64> {
     (all > 0).then(|| 2.0 * matched as f64 / all as f64)
 }
 
-/// Finds a partner for one, where others may have to take another (Kuhn 1955).
+/// Finds a partner for landmark `one`. If all candidates are taken, it tries to move another landmark to a different partner, which
+/// makes the matching as large as possible (Kuhn 1955).
 fn matches(one: usize, partners: &[Vec<usize>], taken: &mut [Option<usize>], tried: &mut [bool]) -> bool {
     for &partner in &partners[one] {
         if std::mem::replace(&mut tried[partner], true) {
@@ -72,7 +73,7 @@ fn matches(one: usize, partners: &[Vec<usize>], taken: &mut [Option<usize>], tri
     false
 }
 
-/// 1 less the edit distance (Levenshtein 1966) over the longer list.
+/// 1 minus the edit distance (Levenshtein 1966) divided by the length of the longer list.
 fn sequences<T: PartialEq>(a: &[T], b: &[T]) -> Option<f64> {
     let longer = a.len().max(b.len());
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -110,7 +111,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_does_not_matter_which_is_first(a in facts(), b in facts()) {
+        fn agreement_is_symmetric(a in facts(), b in facts()) {
             prop_assert_eq!(Agreement::of(&a, &b), Agreement::of(&b, &a));
         }
 
@@ -121,13 +122,13 @@ mod tests {
         }
 
         #[test]
-        fn it_is_a_share(a in facts(), b in facts()) {
+        fn agreement_is_between_0_and_1(a in facts(), b in facts()) {
             prop_assert!(Agreement::of(&a, &b).kinds().into_iter().flatten().all(|share| (0.0..=1.0).contains(&share)));
         }
     }
 
     #[test]
-    fn each_kind_is_held_against_its_own() {
+    fn agreement_compares_each_kind_of_statement() {
         let landmarks = |all: &[(&str, usize)]| all.iter().map(|(name, at)| ((*name).to_owned(), *at)).collect();
         let a = Facts {
             landmarks: landmarks(&[("sofa", 1), ("lamp", 4)]),

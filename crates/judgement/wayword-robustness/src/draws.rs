@@ -1,10 +1,11 @@
-//! Random draws by name: the same for the same names, whatever was drawn before.
+//! Random numbers that depend only on a seed and on names, and not on earlier draws. So the draw for one frame or thing stays the same
+//! when others are added or removed.
 
 use rand::Rng;
 use std::f64::consts::TAU;
 use wayword_core::rng;
 
-/// A number in [0, 1), all equally likely.
+/// A number from the uniform distribution on [0, 1).
 pub(crate) fn uniform(seed: u64, purpose: &[&str]) -> f64 {
     rng(seed, purpose).random()
 }

@@ -1,4 +1,4 @@
-//! What a text states of its path.
+//! Extracts the statements of a text about its path: landmarks, turns, rooms and floors.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -11,13 +11,13 @@ use wayword_language::{
 /// The statements of a text, each kind in the order of the text.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Facts {
-    /// The landmarks that have evidence: name in normal spelling, and frame.
+    /// The landmarks with evidence: the name in normal spelling, and the frame.
     pub landmarks: Vec<(String, usize)>,
-    /// The turns, also those told as a door or room to a side; `Behind` is a turn around.
+    /// The turns. A door or room on a side ("the door on the left") counts as a turn; `Behind` is a turn around.
     pub turns: Vec<Side>,
-    /// The rooms that have evidence, by their usual names; those in a row that are equal are one.
+    /// The rooms with evidence, by their usual names. Equal neighbours count once.
     pub rooms: Vec<String>,
-    /// The climbs and storeys.
+    /// The climbs and the storeys.
     pub floors: Vec<Floor>,
 }
 
@@ -29,13 +29,13 @@ pub enum Floor {
     Up,
     /// One goes down.
     Down,
-    /// One is on this storey; 0 is the top one.
+    /// One is on this storey; 0 is the top storey.
     Storey(u32),
 }
 
 impl Facts {
-    /// The statements of a text. `mentions` are those that the checks found, and `place` gives the frame of the path with which
-    /// it is compared for a frame of its own path.
+    /// Extracts the statements. `mentions` are those that the checks have found. `place` maps a frame of the text's own path to the
+    /// corresponding frame of the path that both texts are compared on.
     #[must_use]
     pub fn of(text: &str, mentions: &[Mention], place: impl Fn(usize) -> usize) -> Self {
         let words = |mention: &Mention| text.get(mention.span[0]..mention.span[1]).map(normal);
@@ -58,7 +58,7 @@ impl Facts {
     }
 }
 
-/// The turn that an event tells: "the door on the left" is one, too.
+/// The turn that an event of the text implies: a turn itself, or an opening on a side ("the door on the left").
 pub(crate) fn turn_told(what: &What) -> Option<Side> {
     match what {
         What::Turn(side) => Some(*side),
@@ -67,10 +67,10 @@ pub(crate) fn turn_told(what: &What) -> Option<Side> {
     }
 }
 
-/// Openings that are no doors.
+/// Openings without a door.
 const DOORWAYS: [&str; 4] = ["doorway", "opening", "entrance", "exit"];
 
-/// Whether one goes through what has that name, or into it.
+/// Whether one walks through or into a thing of this name.
 fn goes_through(name: &str) -> bool {
     is_room(name) || DOORWAYS.contains(&name) || thing(name).is_some_and(|thing| thing.class == Class::Door)
 }

@@ -1,10 +1,11 @@
 //! Robustness: how much of the instructions changes when the world, its pictures or the paths change.
 //!
-//! A [`Change`] says what is changed and by how much. A change of a world is a wrapper over its
-//! [`Platform`](wayword_core::Platform) ([`worlds`]), one of a path a function ([`paths`]). What a text has to be after a
-//! change is in [`metamorphic`]. This crate writes no text: its caller generates them and gives them to the figures.
+//! A [`Change`] names one change and its dose. A change of a world is a wrapper over its [`Platform`](wayword_core::Platform)
+//! ([`worlds`]); a change of a path is a function ([`paths`]). [`metamorphic`] checks whether a text after a change is what the change
+//! should have made of the text before it. [`ratio`] and [`sets`] compute figures from many texts. This crate writes no texts itself:
+//! its caller generates them and passes them in.
 //!
-//! Architecture invariant: nothing here reads a file, runs a model or knows a platform beyond the trait.
+//! Architecture invariant: this crate reads no files, runs no models, and knows platforms only by the trait.
 
 mod agreement;
 mod change;

@@ -1,12 +1,13 @@
-//! Paths that are changed. None of these changes moves a frame off the polyline of the path.
+//! Changes of paths: reversal, other distances between frames, dropped frames, and another start heading. All of them keep frames on
+//! the polyline of the path.
 
 use crate::draws::uniform;
 use wayword_core::{Frame, Heading, Path, Pose, path::Stop};
 
-/// A frame that lies this near to one of the path, metres along it, is that frame.
+/// A new frame at most this far along the path from an existing one, metres, is that frame.
 const SAME_M: f64 = 1e-6;
 
-/// Least distance between two frames that can be asked for, metres.
+/// Smallest allowed distance between two frames, metres.
 const LEAST_SPACING_M: f64 = 0.05;
 
 /// A changed path.
@@ -14,12 +15,12 @@ const LEAST_SPACING_M: f64 = 0.05;
 pub struct ChangedPath {
     /// The path, under the same id.
     pub path: Path,
-    /// For each of its frames, the frame of the path before the change that it stands for.
+    /// For each of its frames, the corresponding frame of the path before the change.
     pub base_frame_of: Vec<usize>,
 }
 
-/// The path walked from its end to its start. It begins along its first hop and has no target, because that was at the
-/// other end. Of an unknown motion only the order changes.
+/// Reverses the path. The new path starts along its first hop and has no target, because the target was at the other end. If the
+/// motion is unknown, only the order of the frames changes.
 #[must_use]
 pub fn reversed(path: &Path) -> ChangedPath {
     let base_frame_of: Vec<usize> = (0..path.frames.len()).rev().collect();
@@ -31,9 +32,9 @@ pub fn reversed(path: &Path) -> ChangedPath {
     ChangedPath { path: Path { frames, target: None, ..path.clone() }, base_frame_of }
 }
 
-/// The path with frames at equal distances of at most `spacing_m` metres along its polyline, both ends kept. A frame
-/// that falls on one of the path keeps its viewpoint; its level is that of the nearest one. A path of unknown motion,
-/// or with one frame, stays as it is.
+/// Places frames at equal distances of at most `spacing_m` metres along the path, including both ends. A new frame that coincides
+/// with one of the path keeps its viewpoint; the storey is that of the nearest frame. A path of unknown motion, or with a single
+/// frame, stays as it is.
 #[must_use]
 pub fn spaced(path: &Path, spacing_m: f64) -> ChangedPath {
     let at_m = along_m(path);
@@ -48,8 +49,8 @@ pub fn spaced(path: &Path, spacing_m: f64) -> ChangedPath {
     rejoined(path, stops.collect(), base_frame_of)
 }
 
-/// The path with only those of its frames that are at least `spacing_m` metres along it from the one kept before, both
-/// ends kept: for platforms that cannot be seen between frames.
+/// Keeps only frames that are at least `spacing_m` metres along the path from the last one that was kept, and both ends. For platforms
+/// that have no views between frames.
 #[must_use]
 pub fn thinned(path: &Path, spacing_m: f64) -> ChangedPath {
     let at_m = along_m(path);
@@ -64,8 +65,8 @@ pub fn thinned(path: &Path, spacing_m: f64) -> ChangedPath {
     without_others(path, kept)
 }
 
-/// The path with each frame between its first and its last dropped with a chance of `percent` per cent. Each frame has
-/// one draw by the seed and the path's id, so that one that is dropped at 10 % is also dropped at 30 %.
+/// Drops each frame between the first and the last with a probability of `percent` per cent. The draw of a frame depends on the seed
+/// and the path's id alone, so a frame that is dropped at 10 % is also dropped at 30 %.
 #[must_use]
 pub fn dropped(path: &Path, percent: f64, seed: u64) -> ChangedPath {
     let last = path.frames.len().saturating_sub(1);
@@ -76,8 +77,7 @@ pub fn dropped(path: &Path, percent: f64, seed: u64) -> ChangedPath {
     without_others(path, (0..path.frames.len()).filter(is_kept).collect())
 }
 
-/// The path with its start heading turned by `turn_deg` degrees, positive right. A path of unknown motion stays as it
-/// is.
+/// Turns the start heading by `turn_deg` degrees, positive to the right. A path of unknown motion stays as it is.
 #[must_use]
 pub fn start_heading(path: &Path, turn_deg: f64) -> ChangedPath {
     let mut changed = unchanged(path);
@@ -89,7 +89,7 @@ pub fn start_heading(path: &Path, turn_deg: f64) -> ChangedPath {
     changed
 }
 
-/// The path without an opening turn: its first frame looks along the first hop.
+/// Removes the opening turn: the first frame then looks along the first hop.
 #[must_use]
 pub fn along(path: &Path) -> ChangedPath {
     let mut changed = unchanged(path);
@@ -106,7 +106,7 @@ fn unchanged(path: &Path) -> ChangedPath {
     ChangedPath { path: path.clone(), base_frame_of: (0..path.frames.len()).collect() }
 }
 
-/// The path with only these of its frames.
+/// Keeps only the given frames of a path.
 fn without_others(path: &Path, kept: Vec<usize>) -> ChangedPath {
     if kept.len() == path.frames.len() {
         return unchanged(path);
@@ -118,14 +118,14 @@ fn without_others(path: &Path, kept: Vec<usize>) -> ChangedPath {
     ChangedPath { path: Path { frames, ..path.clone() }, base_frame_of: kept }
 }
 
-/// The path along other stops, from its own start heading to its own end.
+/// Makes a path along other stops, with the start heading and the end of the original.
 fn rejoined(path: &Path, stops: Vec<Stop>, base_frame_of: Vec<usize>) -> ChangedPath {
     let start = path.frames.first().map(|frame| frame.pose.heading);
     let mut after = Path { frames: Path::frames_along(stops, start), ..path.clone() };
     if let (Some(before), Some(now), Some(target)) = (path.frames.last(), after.frames.last(), &mut after.target)
         && before.pose.heading.turn_to(now.pose.heading).abs() > SAME_M
     {
-        // Somebody who arrives from elsewhere sees the target on another side.
+        // A walker who arrives from another direction sees the target on another side.
         target.told_by.retain(|distinction| !distinction.needs_pose());
     }
     ChangedPath { path: after, base_frame_of }
@@ -136,7 +136,7 @@ fn stop(frame: &Frame) -> Stop {
     Stop { position, viewpoint, level }
 }
 
-/// How far along the path each frame is, metres.
+/// Distance of each frame from the start along the path, metres.
 fn along_m(path: &Path) -> Vec<f64> {
     let mut at_m = 0.0;
     let mut before = path.frames.first().map(|frame| frame.pose.position);
@@ -148,13 +148,13 @@ fn along_m(path: &Path) -> Vec<f64> {
     path.frames.iter().map(place).collect()
 }
 
-/// The frame that is nearest to a place along the path; the earlier of two.
+/// The frame nearest to a position along the path; of two, the earlier one.
 fn nearest(at_m: &[f64], place_m: f64) -> usize {
     let off = |frame: &usize| (at_m[*frame] - place_m).abs();
     (0..at_m.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
 }
 
-/// The stop at a place along the path, whose nearest frame is `base`.
+/// The stop at a position along the path. `base` is the nearest frame.
 fn stop_at(path: &Path, at_m: &[f64], place_m: f64, base: usize) -> Stop {
     let here = stop(&path.frames[base]);
     if (at_m[base] - place_m).abs() <= SAME_M {

@@ -1,4 +1,7 @@
-//! R: how much a change matters, between asking again and another path.
+//! The robustness ratio R: how much a change matters to the texts of many paths.
+//!
+//! Two anchors fix the scale. R is 1 if the text after the change agrees with the original as well as a text for the same unchanged
+//! world that is simply generated again, and 0 if it agrees no better than the text of another path.
 
 use crate::agreement::Agreement;
 use serde::{Deserialize, Serialize};
@@ -6,63 +9,63 @@ use std::collections::BTreeMap;
 use wayword_core::seed::derive;
 use wayword_metrics::{Estimate, percentile_interval};
 
-/// R needs so many paths.
+/// Fewest paths for which R is computed.
 pub const LEAST_PATHS: usize = 30;
-/// And anchors that are so far apart.
+/// Smallest difference between the two anchors for which R is computed. With nearly equal anchors the ratio would be noise.
 pub const LEAST_GAP: f64 = 0.1;
 
-/// The kinds of statements, and all of them together.
+/// The kinds of statements, and the mean of all.
 pub const KINDS: [&str; 5] = ["landmarks", "turns", "rooms", "floors", "mean"];
 
-/// The agreements of the text of one path.
+/// The agreements of the original text of one path with three other texts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OfPath {
-    /// Its scene: texts of one scene are not independent.
+    /// Its scene. Texts of one scene are not independent.
     pub scene: String,
-    /// With its text in the changed world.
+    /// With the text in the changed world.
     pub changed: Agreement,
-    /// With its text in the same world, asked again.
+    /// With a second text in the unchanged world.
     pub again: Agreement,
     /// With the text of another path.
     pub other: Agreement,
 }
 
-/// R of one kind of statement.
+/// R for one kind of statement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Robustness {
     /// One of [`KINDS`].
     pub kind: String,
     /// The ratio with its interval.
     pub r: Option<Estimate>,
-    /// Why there is none.
+    /// Why R cannot be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// The mean agreement with the changed world's text, over the same paths as the two that follow; `None` of no paths.
+    /// The mean agreement with the text in the changed world, over the same paths as the next two means; `None` without paths.
     pub changed: Option<f64>,
-    /// With the text that was asked for again.
+    /// The mean agreement with the second text in the unchanged world.
     pub again: Option<f64>,
-    /// With another path's text.
+    /// The mean agreement with another path's text.
     pub other: Option<f64>,
-    /// Over how many paths.
+    /// The number of paths.
     pub paths: usize,
 }
 
-/// How intervals are drawn.
+/// Options of the bootstrap that gives intervals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drawing {
     /// Number of resamples.
     pub resamples: usize,
-    /// What an interval covers, as 0.95.
+    /// The confidence level, as 0.95.
     pub level: f64,
     /// The seed.
     pub seed: u64,
 }
 
-/// R of each kind of statement, and of their mean.
+/// Computes R for each kind of statement, and for their mean.
 ///
-/// R is a ratio of means over the paths whose three agreements have that kind. Of the mean of kinds, each path counts with the
-/// kinds that all three have. The interval is a percentile bootstrap over whole scenes (Efron 1979), in which both anchors vary
-/// with the resample; a resample whose anchors are not apart is left out.
+/// R is `(changed - other) / (again - other)`, where each term is a mean over all paths that have the kind in all three comparisons. In
+/// the mean of kinds, each path counts with the kinds that all three comparisons have. The interval is a percentile bootstrap over
+/// whole scenes (Efron 1979), in which both anchors vary with the resample; resamples with equal anchors are left out.
 #[must_use]
 pub fn robustness(paths: &[OfPath], drawing: Drawing) -> Vec<Robustness> {
     KINDS.iter().enumerate().map(|(kind, name)| of_kind(paths, kind, name, drawing)).collect()
@@ -102,7 +105,7 @@ fn of_kind(paths: &[OfPath], kind: usize, name: &str, drawing: Drawing) -> Robus
     }
 }
 
-/// The three agreements of a path for a kind, or for the mean of those kinds that all three have.
+/// The three agreements of a path for a kind, or for the mean of the kinds that all three have.
 fn three(path: &OfPath, kind: usize) -> Option<[f64; 3]> {
     let kinds = [path.changed.kinds(), path.again.kinds(), path.other.kinds()];
     let of = |kind: usize| Some([kinds[0][kind]?, kinds[1][kind]?, kinds[2][kind]?]);
@@ -152,7 +155,7 @@ fn interval(scenes: &[Sum], all: &Sum, name: &str, drawing: Drawing) -> Estimate
     Estimate { mean, low, high, values: all.paths, clusters: scenes.len() }
 }
 
-/// Change of R for one more of a dose's unit: the slope of the line of least squares. `None` of fewer than two doses.
+/// The change of R per unit of the dose: the slope of a least squares line. `None` for fewer than two different doses.
 #[must_use]
 pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let count = points.len() as f64;
@@ -165,8 +168,8 @@ pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| across / spread)
 }
 
-/// The doses at which R falls below `least`, first below the unchanged dose and then above it; where no dose is unchanged, from
-/// the lowest dose on. Between two doses, and from the unchanged one, at which R is taken for 1, the line is straight.
+/// The doses at which R falls below `least`: at most one below the unchanged dose, and one above it. If there is no unchanged dose, the
+/// search goes upwards from the lowest dose. R is interpolated linearly between doses, and is taken as 1 at the unchanged dose.
 #[must_use]
 pub fn falls_at(points: &[(f64, f64)], unchanged: Option<f64>, least: f64) -> Vec<f64> {
     let one_way = |sign: f64| {
@@ -213,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn asking_again_is_one_and_another_path_is_zero() {
+    fn robustness_ratio_is_1_for_a_second_text_and_0_for_another_path() {
         let again = of_turns(&paths(40, |_| 0.8)).r.unwrap();
         assert!((again.mean - 1.0).abs() < 1e-12 && (again.low - 1.0).abs() < 1e-12, "{again:?}");
         let other = of_turns(&paths(40, |at| 0.2 + 0.1 * (at % 2) as f64)).r.unwrap();

@@ -1,4 +1,5 @@
-//! Several sets of texts in the same buildings: how an agent's success varies among them, and whether they rank agents alike.
+//! Compares several sets of texts for the same buildings: how an agent's success varies between the sets, and whether the sets rank
+//! agents alike.
 
 use crate::ratio::Drawing;
 use rand::Rng;
@@ -7,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use wayword_core::rng;
 use wayword_metrics::{kendall_tau_b, percentile_interval};
 
-/// An agent's success by one text.
+/// An agent's success with one text.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Followed {
     /// The agent.
@@ -22,28 +23,28 @@ pub struct Followed {
     pub item: String,
     /// Which of the item's texts in that set, from 0.
     pub text_index: usize,
-    /// 1 where the agent arrived, else 0.
+    /// 1 if the agent arrived, else 0.
     pub success: f64,
 }
 
-/// An agent's success rates over several sets.
+/// An agent's success rates with several sets.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OfAgent {
     /// The agent.
     pub agent: String,
-    /// Its success rate by each set, over the paths that all sets have. A path counts once, with the mean of its texts.
+    /// Its success rate with each set, over the paths that all sets have. Each path counts once, with the mean of its texts.
     pub of_set: BTreeMap<String, f64>,
     /// The mean over sets.
     pub mean: f64,
-    /// The standard deviation over sets; `None` of a single set.
+    /// The standard deviation over sets; `None` for a single set.
     pub spread: Option<f64>,
-    /// How many paths.
+    /// The number of paths.
     pub paths: usize,
-    /// Where success varies.
+    /// From where the variance of success comes.
     pub shares: Option<Shares>,
 }
 
-/// How much of the variance of success comes from where, as shares that add up to 1, each with its interval.
+/// The sources of the variance of success, as shares that add up to 1. Each has a value and the two bounds of its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
     /// From scene to scene.
@@ -52,7 +53,7 @@ pub struct Shares {
     pub path: [f64; 3],
     /// From set to set.
     pub set: [f64; 3],
-    /// What is left: a path that is harder by one set than by another, and chance.
+    /// The rest: chance, and paths that are harder with one set than with another.
     pub rest: [f64; 3],
 }
 
@@ -63,19 +64,19 @@ pub struct Ranking {
     pub one: String,
     /// The other.
     pub other: String,
-    /// Kendall's tau-b of the agents' success rates; `None` of fewer than two agents, or where a set ties all of them.
+    /// Kendall's tau-b of the agents' success rates; `None` for fewer than two agents, or if all agents tie in one set.
     pub tau_b: Option<f64>,
-    /// Its interval, over whole scenes.
+    /// Its interval, by a bootstrap over whole scenes.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Of each path of a scene, the sum and the number of its successes by each set.
+/// By scene and path: for each set the sum and the number of its successes.
 type Sums<'a> = BTreeMap<&'a str, BTreeMap<&'a str, Vec<(f64, usize)>>>;
 
 /// Success by path: for each scene its paths, for each path a mean for each set.
 type Table = Vec<Vec<Vec<f64>>>;
 
-/// What several sets say of each agent. Only paths that an agent walked by every set count.
+/// Computes the success rates of each agent with the sets. Only paths that the agent has walked with every set count.
 #[must_use]
 pub fn of_agents(followed: &[Followed], drawing: Drawing) -> Vec<OfAgent> {
     let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
@@ -114,7 +115,7 @@ fn table(followed: &[Followed], agent: &str, sets: &[&str]) -> Table {
     scenes.filter(|paths| !paths.is_empty()).collect()
 }
 
-/// The shares of variance with their intervals, where there are two sets, two scenes, and a scene with two paths.
+/// The shares of variance with their intervals; `None` without two sets, two scenes, and a scene with two paths.
 fn shares(table: &Table, drawing: Drawing) -> Option<Shares> {
     let all: Vec<&Vec<Vec<f64>>> = table.iter().collect();
     let found = components(&all)?;
@@ -133,8 +134,9 @@ fn shares(table: &Table, drawing: Drawing) -> Option<Shares> {
     Some(Shares { scene: with_interval(0), path: with_interval(1), set: with_interval(2), rest: with_interval(3) })
 }
 
-/// The shares of scene, path, set and the rest: a model of random effects in which sets cross paths and paths lie in scenes,
-/// by the method of moments (Searle, Casella, McCulloch, "Variance Components", 1992, ch. 4). A component below 0 counts as 0.
+/// The shares of scene, path, set and the rest, by a random effects model. Paths are nested in scenes and crossed with sets. The
+/// components are estimated by the method of moments: mean squares are set equal to their expected values (Searle, Casella, McCulloch,
+/// "Variance Components", 1992, ch. 4). A negative component counts as 0.
 fn components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
     let rows: Vec<&Vec<f64>> = scenes.iter().flat_map(|scene| scene.iter()).collect();
     let (paths, sets) = (rows.len(), rows.first()?.len());
@@ -168,7 +170,7 @@ fn components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
     let ms_path = s * of_paths / (p - c);
     let ms_scene = s * of_scenes / (c - 1.0);
     let ms_set = p * of_sets / (s - 1.0);
-    // How many paths a scene has, as uneven numbers count.
+    // The effective number of paths per scene, where scenes have different numbers.
     let per_scene = (p - scenes.iter().map(|scene| square(scene.len() as f64)).sum::<f64>() / p) / (c - 1.0);
     let parts = [(ms_scene - ms_path) / (s * per_scene), (ms_path - ms_rest) / s, (ms_set - ms_rest) / p, ms_rest];
     let parts = parts.map(|part| f64::max(part, 0.0));
@@ -176,7 +178,7 @@ fn components(scenes: &[&Vec<Vec<f64>>]) -> Option<[f64; 4]> {
     (sum > 0.0).then(|| parts.map(|part| part / sum))
 }
 
-/// Whether sets rank the agents alike, for each pair of sets, over the paths that every agent walked by every set.
+/// Computes for each pair of sets whether they rank the agents alike, over the paths that every agent has walked with every set.
 #[must_use]
 pub fn rankings(followed: &[Followed], drawing: Drawing) -> Vec<Ranking> {
     let sets: Vec<&str> = followed.iter().map(|one| one.set.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
@@ -252,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_of_variance_are_those_that_the_data_were_made_with() {
+    fn shares_of_variance_match_the_effects_of_generated_data() {
         // Effects of 1, 2 and 1 have variances as 1 to 4 to 1; of five sets no share is known well, so they have none.
         let shares = of_agents(&made([1.0, 2.0, 0.0, 1.0]), DRAWING)[0].shares.unwrap();
         let found = [shares.scene[0], shares.path[0], shares.set[0], shares.rest[0]];

@@ -1,5 +1,5 @@
-//! Metamorphic tests of the program's default roles (labels, and rules that write) on generated homes: the text of a changed
-//! world has to be just what the change makes of the text of the unchanged one.
+//! Metamorphic tests of the program's default roles (labels, and rules that write) on generated homes: the text for a changed world has
+//! to differ from the text for the unchanged one exactly as the change demands.
 //!
 //! The follower that chooses among candidates in the program is left out. `WAYWORD_METAMORPHIC_PATHS` sets the number of paths,
 //! `WAYWORD_METAMORPHIC_SHOW` how many of the differences of each test are printed.
@@ -38,7 +38,7 @@ use wayword_synthesis::{
 /// Views by scene, place and gaze.
 type Views = BTreeMap<(SceneId, [i64; 5]), View>;
 
-/// Views of a platform, each drawn once and without its picture, which nobody here looks at.
+/// A platform that renders each view once and caches it, without its picture, which these tests do not use.
 #[derive(Clone)]
 struct Drawn {
     platform: Arc<HousePlatform>,
@@ -90,7 +90,7 @@ impl Platform for Drawn {
     }
 }
 
-/// A walk in some world, with all that a writer gets.
+/// A walk in some world, with everything that a writer gets.
 struct Known {
     walk: Walk,
     memory: Memory,
@@ -100,7 +100,7 @@ struct Known {
 const STYLES: [&str; 2] = ["r2r", "reverie"];
 const TESTS: [&str; 6] = ["mirror", "turn", "material", "reverse", "remove", "add"];
 
-/// As the program makes an item, but for the follower.
+/// Prepares a walk as the program does for an item, except for the follower.
 fn know(platform: &dyn Platform, mut path: Path) -> Known {
     let all_around = |frame: &Frame| -> Vec<View> {
         let gazes = gazes_around(&path, frame);
@@ -209,7 +209,7 @@ impl Trial<'_> {
         }
     }
 
-    /// Both ways without a target, which stands at one end only, and without a turn before the first step.
+    /// Checks the path in both directions, without a target, which is at one end only, and without a turn before the first step.
     fn back(&mut self, path: &Path) {
         let along = |reversed: bool| {
             let mut stops: Vec<Stop> = path
@@ -266,7 +266,7 @@ impl Trial<'_> {
         self.judge("remove", at, remove(said(text, path), said(&other, path), Gone { name, seen_from: &seen_from }));
     }
 
-    /// Something that no home has, beside the middle of the path and beside its end.
+    /// Adds a thing that no home has, near the middle of the path and near its end.
     fn add(&mut self, path: &Path, base: &Known, texts: &[Instruction]) {
         let last = path.frames.len() - 1;
         let things = || base.evidence.frames.iter().flat_map(|frame| &frame.things);
@@ -308,7 +308,7 @@ fn told_things(text: &Instruction) -> BTreeSet<String> {
         .collect()
 }
 
-/// The things of a text whose colour it names, with the colour.
+/// The things of a text that have a colour in it, with the colour.
 fn told_colours(text: &Instruction) -> BTreeSet<(String, String)> {
     let events = read(&text.text, &BTreeSet::new()).events;
     let coloured = events.into_iter().filter_map(|event| match event.what {
@@ -358,7 +358,7 @@ fn outcomes(paths: usize) -> Outcomes {
 /// How many paths the tests are made of by default.
 const PATHS: usize = 12;
 
-/// Each test holds in at least this share of the texts that tell what was changed.
+/// Each test has to hold in at least this share of the texts that mention the changed thing.
 const LEAST: [(&str, f64); 6] =
     [("mirror", 1.0), ("turn", 1.0), ("material", 1.0), ("reverse", 0.99), ("remove", 0.99), ("add", 0.99)];
 

@@ -1,6 +1,6 @@
-//! Changes with a dose: their names, units and ranges.
+//! Changes with a dose: their names, units and ranges. The unit is part of the name, as in `camera_height_m`.
 
-/// What a dose is of. Its unit is in its name.
+/// The quantity that a dose changes. Its name contains the unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dose {
     /// Height of the eye over the floor, metres.
@@ -31,7 +31,7 @@ pub enum Dose {
     StartHeading,
 }
 
-/// What is fixed about a dose.
+/// The constant properties of a dose.
 struct Row {
     name: &'static str,
     unit: &'static str,
@@ -58,7 +58,7 @@ impl Dose {
         Self::StartHeading,
     ];
 
-    /// The table of all doses.
+    /// Looks the properties up in the table of all doses.
     fn row(self) -> Row {
         let row = |name, unit, unchanged, range, example| Row { name, unit, unchanged, range, example };
         match self {
@@ -92,8 +92,7 @@ impl Dose {
         self.row().unit
     }
 
-    /// The value at which nothing changes; `None` where a path has a value of its own, as with the distance between
-    /// frames.
+    /// The value that changes nothing; `None` for the distance between frames, because each path has its own.
     #[must_use]
     pub fn unchanged(self) -> Option<f64> {
         self.row().unchanged
@@ -105,19 +104,19 @@ impl Dose {
         self.row().range
     }
 
-    /// Values that make sense, as they are written: "0.3,0.88,1.6".
+    /// Example values as a user writes them: "0.3,0.88,1.6".
     #[must_use]
     pub fn example(self) -> &'static str {
         self.row().example
     }
 
-    /// Whether only whole numbers are values of it.
+    /// Whether it takes only whole numbers.
     #[must_use]
     pub fn is_whole(self) -> bool {
         self == Self::JpegQuality
     }
 
-    /// What a value of it does, in one sentence.
+    /// Describes the effect of a value in one sentence.
     #[must_use]
     pub fn description(self, value: f64) -> String {
         match self {

@@ -1,4 +1,4 @@
-//! What is changed: one change, with its dose where it has one.
+//! The type [`Change`]: one change of a world, its pictures or its paths, with a dose if it has one.
 
 mod dose;
 mod parse;
@@ -21,11 +21,11 @@ const PLATFORM: &str = "platform";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Change {
-    /// The same poses on another platform: `NAME[:DATA][@ADDRESS]`, as it was written.
+    /// The same poses on another platform, as the user wrote it: `NAME[:DATA][@ADDRESS]`.
     Platform(String),
-    /// A change that is made or not.
+    /// A change without a dose.
     Whole(Whole),
-    /// A change of so much, in the dose's own unit. The number lies in the dose's range where the change was parsed.
+    /// A change with a dose, in the dose's unit. [`Change::parse`] makes sure that the number is in the dose's range.
     By(Dose, f64),
 }
 
@@ -36,8 +36,8 @@ impl Change {
         [PLATFORM].into_iter().chain(whole).chain(Dose::ALL.into_iter().map(Dose::name))
     }
 
-    /// The changes that are made where nobody says which: Habitat's reading of the house, mirror, turn, remove, three heights of the camera, three
-    /// fields of view, three distances between frames, and three heading noises.
+    /// The changes that are made by default: Habitat's rendering of the house, mirror, turn, remove, three heights of the camera,
+    /// three fields of view, three distances between frames, and three heading noises.
     #[must_use]
     pub fn default_set() -> Vec<Self> {
         let doses = [
@@ -76,15 +76,14 @@ impl Change {
         self.kind().map(Dose::unit)
     }
 
-    /// The dose at which nothing changes; `None` for a change without a dose, and where no dose leaves every path as it
-    /// is.
+    /// The dose that changes nothing; `None` for a change without a dose, and if no dose leaves every path unchanged.
     #[must_use]
     pub fn unchanged(&self) -> Option<f64> {
         self.kind().and_then(Dose::unchanged)
     }
 
-    /// How far the dose is from [`unchanged`](Self::unchanged), as a share of the way to the end of its range on the
-    /// same side: 0 to 1.
+    /// How strong the change is, from 0 to 1: the distance of the dose from [`unchanged`](Self::unchanged), divided by the distance
+    /// of the end of the range on the same side.
     #[must_use]
     pub fn strength(&self) -> Option<f64> {
         let Self::By(dose, value) = self else { return None };
@@ -105,7 +104,7 @@ impl Change {
             Self::Platform(spec) if spec.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit()) => {
                 format!("{name}-{spec}")
             }
-            // A path or an address is no name of a file, so its hash stands for it.
+            // A path or an address can have characters that file names may not have, so a hash takes its place.
             Self::Platform(spec) => {
                 let platform = spec.split([':', '@']).next().unwrap_or_default();
                 let safe: String = platform.chars().filter(char::is_ascii_alphanumeric).collect();
@@ -114,7 +113,7 @@ impl Change {
         }
     }
 
-    /// What it does, in one sentence.
+    /// Describes the effect in one sentence.
     #[must_use]
     pub fn description(&self) -> String {
         match self {

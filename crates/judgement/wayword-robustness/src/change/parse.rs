@@ -1,20 +1,20 @@
-//! Changes as they are written: `mirror`, `platform=SPEC`, `NAME=NUMBER,NUMBER`.
+//! Reads changes as users write them: `mirror`, `platform=SPEC`, `NAME=NUMBER,NUMBER`.
 
 use super::{Change, Dose, PLATFORM, Whole};
 
 /// A text that names no change.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChangeError {
-    /// A name that no change has. [`Change::names`] lists those that there are.
+    /// A name that no change has. [`Change::names`] lists the known ones.
     #[error("there is no change \"{name}\"; there are {}", Change::names().collect::<Vec<_>>().join(", "))]
     UnknownName {
         /// The name.
         name: String,
     },
-    /// A change with a dose, without one.
+    /// A change that needs a dose was written without one.
     #[error("{} needs a number between {} and {} {}, as in {}={}", .0.name(), .0.range().0, .0.range().1, .0.unit(), .0.name(), .0.example())]
     NoDose(Dose),
-    /// A change that is made or not, with a dose.
+    /// A change without a dose was written with one.
     #[error("{} has no number, and {given:?} was given: write just {}", change.name(), change.name())]
     NeedlessDose {
         /// The change.
@@ -22,7 +22,7 @@ pub enum ChangeError {
         /// What was given.
         given: String,
     },
-    /// Something that is no number.
+    /// A dose is not a number.
     #[error("{}: {text:?} is not a number; give numbers between {} and {} {}, as in {}={}", dose.name(), dose.range().0, dose.range().1, dose.unit(), dose.name(), dose.example())]
     NotANumber {
         /// What it is for.
@@ -72,7 +72,7 @@ impl Change {
     /// `camera_height_m=0.3,0.88,1.6`. Blanks around names and numbers do not count.
     ///
     /// # Errors
-    /// When there is no such change, or a number is missing, superfluous, no number, out of range or given twice.
+    /// When the change is unknown, or a number is missing, superfluous, malformed, out of range or given twice.
     pub fn parse(text: &str) -> Result<Vec<Self>, ChangeError> {
         let (name, given) = match text.split_once('=') {
             Some((name, given)) => (name.trim(), Some(given.trim())),

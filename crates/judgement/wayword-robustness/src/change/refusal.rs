@@ -1,24 +1,24 @@
-//! Changes that would mean nothing where they were asked for.
+//! Refuses changes that would have no effect, or cannot be made, on the platform and with the observer of a run, and explains why.
 
 use super::{Change, Dose, Whole};
 
-/// How far apart viewpoints of Matterport3D are on average, metres (Chang et al., "Matterport3D", 2017).
+/// Mean distance between viewpoints of Matterport3D, metres (Chang et al., "Matterport3D", 2017).
 const BETWEEN_VIEWPOINTS_M: f64 = 2.25;
-/// How far apart the frames are that are chosen from a recording, metres.
+/// Distance between the frames that are chosen from a recording, metres.
 const BETWEEN_FRAMES_M: f64 = 1.0;
 
-/// Who sees: where the words for what is seen come from.
+/// Who names the things in a view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sees {
     /// The platform's labels.
     Labels,
-    /// A scripted eye, whose recall is a stated function of the dose.
+    /// A scripted eye. Its recall is a fixed function of the dose.
     Eye,
-    /// A model, which gets the pictures.
+    /// A model that gets the pictures.
     Pictures,
 }
 
-/// Where a change is asked for.
+/// The run for which a change is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setting<'a> {
     /// The platform's name.
@@ -27,14 +27,14 @@ pub struct Setting<'a> {
     pub sees: Sees,
     /// Whether the frames of its paths have poses.
     pub has_poses: bool,
-    /// Whether it draws what is seen from any pose, and does not just have pictures that were taken before.
+    /// Whether it can render a view from any pose, and is not limited to existing pictures.
     pub draws: bool,
-    /// Whether its views come from the viewpoints of a graph alone, and all around from each.
+    /// Whether it has views only from the viewpoints of a graph, but in all directions from each.
     pub graph: bool,
 }
 
 impl Change {
-    /// Why the change means nothing there, in one sentence; `None` where it means something.
+    /// Why the change cannot be used for this run, in one sentence; `None` if it can.
     #[must_use]
     pub fn refusal(&self, there: &Setting<'_>) -> Option<String> {
         let why = match self {
@@ -53,12 +53,12 @@ pub struct Elsewhere<'a> {
     pub name: &'a str,
     /// Its folder or file of data.
     pub data: Option<&'a str>,
-    /// Its address, where it runs already.
+    /// Its address, if it is already running.
     pub at: Option<&'a str>,
 }
 
 impl<'a> Elsewhere<'a> {
-    /// Takes apart what was written behind `platform=`.
+    /// Splits the text behind `platform=`.
     #[must_use]
     pub fn of(spec: &'a str) -> Self {
         let (rest, at) = spec.split_once('@').map_or((spec, None), |(rest, at)| (rest, Some(at)));
@@ -129,7 +129,7 @@ impl Dose {
 }
 
 impl Setting<'_> {
-    /// Whether its pictures were taken one by one along a path.
+    /// Whether its pictures were taken one by one along a path, as in a recording.
     fn is_recorded(&self) -> bool {
         !self.draws && !self.graph
     }

@@ -25,7 +25,7 @@ fn a_list_of_numbers_is_one_change_each() {
 }
 
 #[test]
-fn what_is_wrong_is_said_with_the_range_and_an_example() {
+fn parse_errors_name_the_range_and_an_example() {
     assert_eq!(refused("blur_px"), "blur_px needs a number between 0 and 40 px, as in blur_px=1,2,4");
     assert_eq!(refused("mirror=1"), "mirror has no number, and \"1\" was given: write just mirror");
     let text = "blur_px: \"\" is not a number; give numbers between 0 and 40 px, as in blur_px=1,2,4";
@@ -83,7 +83,7 @@ fn the_default_set_can_be_made_where_everything_is_drawn() {
 }
 
 #[test]
-fn what_changes_only_pictures_is_refused_with_labels() {
+fn refusal_of_picture_changes_with_labels() {
     for text in
         ["blur_px=1", "noise_percent=1", "jpeg_quality_percent=9", "exposure_stops=1", "colour_temperature_k=3000"]
     {
@@ -118,7 +118,7 @@ fn fixed_pictures_have_the_camera_that_took_them() {
 }
 
 #[test]
-fn what_needs_poses_is_refused_without_them() {
+fn refusal_of_changes_that_need_poses_without_poses() {
     let blind = Setting { has_poses: false, ..RECORDING };
     for text in [
         "platform=house",

@@ -1,6 +1,6 @@
-//! Changes without a dose.
+//! Changes without a dose, and what each of them does.
 
-/// A change that is made or not.
+/// A change without a dose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Whole {
     /// The world is mirrored: left becomes right.
@@ -34,7 +34,7 @@ impl Whole {
         }
     }
 
-    /// What it does, in one sentence.
+    /// Describes the effect in one sentence.
     #[must_use]
     pub fn description(self) -> &'static str {
         match self {

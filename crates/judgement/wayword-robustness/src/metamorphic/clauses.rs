@@ -1,4 +1,7 @@
-//! The clauses of a text with the frames of which they speak.
+//! Splits a text into clauses with the frames that each clause may be about, and compares the clauses of two texts.
+//!
+//! After a local change of the world, such as a removed lamp, only clauses about frames that see the change may differ. Most clauses
+//! have mentions with frames; for the others the range is inferred from their neighbours.
 
 use super::Written;
 use std::{collections::BTreeSet, ops::RangeInclusive};
@@ -8,27 +11,27 @@ use wayword_language::{
     text::tokens,
 };
 
-/// A part of a sentence, as the reader takes texts apart.
+/// A clause, as the reader of the language crate divides sentences.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Clause {
-    /// Its words in lower case, without what joins it to the clause before.
+    /// Its words in lower case, without the conjunctions at its beginning.
     pub(super) words: String,
-    /// The first and the last frame of which it may speak: those of its mentions, of a room also the one from which one enters
-    /// it, where it ends with a thing up to the next turn or climb, and, where it has no mention, those from the clause before it
-    /// to the one behind it. One stops at the last frame.
+    /// The first and the last frame that it may be about. These are the frames of its mentions. For a room, the frame before it is
+    /// included, from which one enters. If the clause ends with a thing, the range reaches up to the next turn or climb. Without
+    /// mentions, it reaches from the clause before to the clause behind. A clause about stopping has the last frame.
     pub(super) frames: RangeInclusive<usize>,
-    /// Whether it ends with a thing.
+    /// Whether its last mention is a thing.
     ends_with_thing: bool,
 }
 
 impl Clause {
-    /// Whether it speaks of one of these frames.
+    /// Whether it may be about one of these frames.
     pub(super) fn speaks_of(&self, frames: &[usize]) -> bool {
         frames.iter().any(|frame| self.frames.contains(frame))
     }
 }
 
-/// The clauses of a text, in order. Those without words of their own are left out.
+/// The clauses of a text, in order. Clauses of conjunctions alone are left out.
 pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
     let tokens = tokens(written.text);
     let numbers = reading::clauses(&tokens);
@@ -73,7 +76,7 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
             let mut later = told[at + 1..].iter().filter(|told| told.speaks_of == Matter::Motion);
             let fixed = later.find_map(|told| told.range).map_or(usize::MAX, |(_, last)| last);
             let (first, last) = match told[at].range {
-                // A thing is mapped to the first frame that shows it, and may be reached only later.
+                // A mention of a thing has the first frame that shows it, but the walker may reach it only later.
                 Some((first, last)) if told[at].speaks_of == Matter::Thing => (first, last.max(fixed)),
                 Some(range) => range,
                 None => (before.min(behind), before.max(behind)),
@@ -84,24 +87,24 @@ pub(super) fn clauses(written: Written<'_>) -> Vec<Clause> {
         .collect()
 }
 
-/// Where a text tells to stop, in bytes.
+/// The byte positions of the words that ask the walker to stop.
 fn stops(text: &str) -> Vec<usize> {
     let events = reading::read(text, &BTreeSet::new()).events;
     events.into_iter().filter(|event| event.what == What::Stop).map(|event| event.span[0]).collect()
 }
 
-/// A clause in the making: its words, the first and last frame of its mentions, and what the last of these is.
+/// A clause before its range is final: its words, the first and last frame of its mentions, and the kind of its last mention.
 struct Told {
     words: String,
     range: Option<(usize, usize)>,
     speaks_of: Matter,
 }
 
-/// What a clause ends with.
+/// The kind of a clause's last mention.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Matter {
     Thing,
-    /// A turn, a climb or a stop, whose frame is known.
+    /// A turn, a climb or a stop. Its frame is known exactly.
     Motion,
     Other,
 }
@@ -120,16 +123,16 @@ fn is_joint(word: &str) -> bool {
     matches!(word, "and" | "then") || !word.starts_with(char::is_alphanumeric)
 }
 
-/// A clause that may not differ, and does.
+/// A clause that differs although it must not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Astray {
-    /// It is gone.
+    /// It is missing in the changed text.
     Lost(String),
-    /// It is new.
+    /// The changed text has it in addition.
     New(String),
 }
 
-/// The first clause that differs though only those that speak of some frames may.
+/// Finds the first clause that differs although it is not about any of the frames in `may_change`.
 pub(super) fn astray(before: &[Clause], after: &[Clause], may_change: &[usize]) -> Option<Astray> {
     let kept = in_both(before, after, may_change);
     let ends = [(before.len(), after.len())];
@@ -138,7 +141,7 @@ pub(super) fn astray(before: &[Clause], after: &[Clause], may_change: &[usize]) 
         let (gone, new) = (&before[from..next_from], &after[to..next_to]);
         let may = |clause: &&Clause| clause.speaks_of(may_change);
         let is_swap = gone.len() == new.len();
-        // A turn or a place may be told with a thing in the one text and without it in the other.
+        // One text may mention a turn or a place together with a thing, and the other one without it.
         let stands_for_one = |clause: &&Clause, others: &[Clause]| {
             is_swap && !clause.ends_with_thing && others.iter().all(|other| may(&other))
         };
@@ -153,10 +156,11 @@ pub(super) fn astray(before: &[Clause], after: &[Clause], may_change: &[usize]) 
     None
 }
 
-/// The clauses that both texts have, in order: as many as there can be, those first that may not change.
+/// The clauses that both texts have, in order, as pairs of indices: a longest common subsequence, in which clauses that must not change
+/// count more than all others together.
 fn in_both(before: &[Clause], after: &[Clause], may_change: &[usize]) -> Vec<(usize, usize)> {
     let worth = |clause: &Clause| if clause.speaks_of(may_change) { 1 } else { before.len() + 1 };
-    // `best[i][j]` is what the clauses from `i` and `j` on can have in common.
+    // `best[i][j]` is the highest worth of a common subsequence of the clauses from `i` and from `j` on.
     let mut best = vec![vec![0; after.len() + 1]; before.len() + 1];
     for i in (0..before.len()).rev() {
         for j in (0..after.len()).rev() {

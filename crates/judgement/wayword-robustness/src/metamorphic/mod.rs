@@ -1,5 +1,7 @@
-//! What a text has to be after a change of its world or its path, given the text before it. Each expectation is exact: where it
-//! does not hold, a sentence says what differs.
+//! Metamorphic checks: each compares the text for a changed world or path with the text before the change.
+//!
+//! No one knows the one right text for a path, but often how it has to react: in a mirrored world, left and right must have changed
+//! places and every other word must be the same. Each expectation is exact. If it does not hold, a sentence explains the difference.
 
 mod clauses;
 mod space;
@@ -12,30 +14,30 @@ pub use way::reverse;
 
 use wayword_core::Mention;
 
-/// A text, and what its words speak of.
+/// A text with its mentions.
 #[derive(Debug, Clone, Copy)]
 pub struct Written<'a> {
     /// The text.
     pub text: &'a str,
-    /// What its words speak of, with the frame that has the evidence.
+    /// The things, rooms and turns that its words mention, each with the frame that has the evidence.
     pub mentions: &'a [Mention],
     /// The last frame of its path.
     pub last_frame: usize,
 }
 
-/// Whether an expectation holds.
+/// The outcome of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// It does.
+    /// The expectation holds.
     Holds,
-    /// The text does not tell what was changed, so that nothing can be expected of it.
+    /// The text does not mention the changed thing, so there is no expectation.
     NotTold,
-    /// It does not; what differs, in a sentence.
+    /// The expectation does not hold. The sentence explains the difference.
     Differs(String),
 }
 
 impl Outcome {
-    /// Of texts that have to be the same.
+    /// Compares texts that have to be equal.
     fn of_equal(expected: &str, found: &str) -> Self {
         if expected == found {
             Self::Holds

@@ -1,34 +1,34 @@
-//! Worlds that are mirrored or turned.
+//! Checks for mirrored and turned worlds.
 
 use super::{Outcome, Written};
 use wayword_language::text::tokens;
 
-/// In a turned world the text is the same, byte for byte.
+/// Checks that the text in a turned world is the same, byte for byte.
 #[must_use]
 pub fn turn(base: Written<'_>, changed: Written<'_>) -> Outcome {
     Outcome::of_equal(base.text, changed.text)
 }
 
-/// In a mirrored world left and right have changed places in the text, and nothing else has changed.
+/// Checks that in a mirrored world left and right have changed places in the text, and all other words are the same.
 #[must_use]
 pub fn mirror(base: Written<'_>, changed: Written<'_>) -> Outcome {
     Outcome::of_equal(&with_sides_swapped(base.text), changed.text)
 }
 
-/// What may stand behind "left" or "right" in a word for a side.
+/// Endings after "left" or "right" that still make a word for a side ("rightmost", "left-hand").
 const OF_SIDES: [&str; 6] = ["", "most", "hand", "ward", "wards", "side"];
 /// Words before which "right" means "just" ("right before the stairs").
 const JUST_BEFORE: [&str; 10] =
     ["before", "next", "behind", "beside", "outside", "inside", "there", "here", "away", "across"];
 
-/// A text with each word for a side replaced by that for the other.
+/// Replaces each word for a side by the word for the other side.
 fn with_sides_swapped(text: &str) -> String {
     let tokens = tokens(text);
     let (mut swapped, mut from) = (String::new(), 0);
     for (at, token) in tokens.iter().enumerate() {
         let word = &text[token.span[0]..token.span[1]];
         let next = tokens.get(at + 1).map_or("", |next| next.word.as_str());
-        // "Turn right before the stairs" is a side all the same.
+        // In "turn right before the stairs" it means the side after all.
         let is_turn = at > 0 && matches!(tokens[at - 1].word.as_str(), "turn" | "go" | "the" | "a" | "your");
         let is_just = token.word == "right" && JUST_BEFORE.contains(&next) && !is_turn;
         swapped.push_str(&text[from..token.span[0]]);
@@ -39,7 +39,7 @@ fn with_sides_swapped(text: &str) -> String {
     swapped
 }
 
-/// The word for the other side in the same case; any other word as it is.
+/// The word for the other side, in the same case; other words are returned unchanged.
 fn other_side(word: &str) -> String {
     for (one, other) in [("left", "right"), ("right", "left"), ("Left", "Right"), ("Right", "Left")] {
         if let Some(rest) = word.strip_prefix(one).filter(|rest| OF_SIDES.contains(rest)) {
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_text_says_the_other_side_and_keeps_its_case() {
+    fn check_mirrored_world_expects_the_other_side_in_the_same_case() {
         let base =
             of("Turn left. Right of the leftmost bed, take the right-hand door and stop right next to the lamp.");
         let mirrored =

@@ -1,4 +1,4 @@
-//! Worlds with a thing less, a thing more, or a thing of another material or colour.
+//! Checks for worlds with a thing removed, added, or given another colour or material.
 
 use super::{
     Outcome, Written,
@@ -10,7 +10,7 @@ use wayword_language::{
     text::{Token, tokens},
 };
 
-/// What is gone, or has come: its name, and the frames that see it or a namesake in one of the two worlds.
+/// The thing that was removed or added: its name, and the frames that see it or a namesake in one of the two worlds.
 #[derive(Debug, Clone, Copy)]
 pub struct Gone<'a> {
     /// The name.
@@ -19,8 +19,7 @@ pub struct Gone<'a> {
     pub seen_from: &'a [usize],
 }
 
-/// The name of what is gone is gone from the text, and clauses that speak of other frames than those that saw it are as they
-/// were.
+/// Checks that the text no longer names the removed thing, and that clauses about frames that did not see it are unchanged.
 #[must_use]
 pub fn remove(base: Written<'_>, changed: Written<'_>, gone: Gone<'_>) -> Outcome {
     if !tells(base, gone.name) {
@@ -32,7 +31,7 @@ pub fn remove(base: Written<'_>, changed: Written<'_>, gone: Gone<'_>) -> Outcom
     local(base, changed, gone).map_or(Outcome::Holds, Outcome::Differs)
 }
 
-/// Only clauses that speak of frames that see what has come may differ.
+/// Checks that only clauses about frames that see the added thing differ.
 #[must_use]
 pub fn add(base: Written<'_>, changed: Written<'_>, come: Gone<'_>) -> Outcome {
     match local(base, changed, come) {
@@ -42,7 +41,7 @@ pub fn add(base: Written<'_>, changed: Written<'_>, come: Gone<'_>) -> Outcome {
     }
 }
 
-/// What differs in clauses that speak of no frame that sees the thing.
+/// The first difference in a clause about frames that do not see the thing, as a sentence.
 fn local(base: Written<'_>, changed: Written<'_>, thing: Gone<'_>) -> Option<String> {
     let (words, how) = match astray(&clauses(base), &clauses(changed), thing.seen_from)? {
         Astray::Lost(words) => (words, "gone"),
@@ -53,7 +52,7 @@ fn local(base: Written<'_>, changed: Written<'_>, thing: Gone<'_>) -> Option<Str
     Some(format!("\"{words}\" speaks of no frame that sees the {name}, and is {how}: {whole}"))
 }
 
-/// Whether a text names a thing as one that is seen.
+/// Whether a text mentions a thing as a landmark or a target.
 fn tells(written: Written<'_>, name: &str) -> bool {
     let is_thing =
         |mention: &&wayword_core::Mention| matches!(mention.kind, MentionKind::Landmark | MentionKind::Target);
@@ -61,8 +60,8 @@ fn tells(written: Written<'_>, name: &str) -> bool {
     said.any(|mention| written.text.get(mention.span[0]..mention.span[1]).is_some_and(|words| agree(words, name)))
 }
 
-/// Where a thing's colour or material is another one, the text has the new word where it had the old one, with the article
-/// that this takes, and nothing else has changed.
+/// Checks that the text has the word for the new colour or material in place of the old one, with the right article ("a red", "an
+/// orange"), and that all other words are the same.
 #[must_use]
 pub fn material(base: Written<'_>, changed: Written<'_>, old: &str, new: &str) -> Outcome {
     let (before, after) = (tokens(base.text), tokens(changed.text));
@@ -126,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_gone_is_not_told_and_other_clauses_stay() {
+    fn check_removed_thing_expects_no_mention_of_the_thing_and_unchanged_other_clauses() {
         let text = "Leave the bedroom and go past the table. Turn left, and stop by the lamp.";
         let told = [("bedroom", Room, 0), ("table", Landmark, 2), ("Turn left", Turn, 4), ("lamp", Landmark, 6)];
         assert_eq!(judged(text, &told, "sofa", &[1, 2]), Outcome::Holds);
@@ -143,14 +142,14 @@ mod tests {
     }
 
     #[test]
-    fn a_clause_that_mentions_nothing_may_speak_of_the_frames_between_its_neighbours() {
+    fn a_clause_without_mentions_may_be_about_the_frames_between_its_neighbours() {
         let text = "Leave the bedroom. Go straight and turn left, then stop by the lamp.";
         let told = [("bedroom", Room, 0), ("turn left", Turn, 4), ("lamp", Landmark, 6)];
         assert_eq!(judged(text, &told, "sofa", &[2]), Outcome::Holds);
     }
 
     #[test]
-    fn what_has_come_changes_only_what_speaks_of_frames_that_see_it() {
+    fn check_added_thing_lets_only_clauses_about_frames_that_see_the_thing_differ() {
         let text = "Leave the bedroom. Go past the piano and turn left, then stop by the lamp.";
         let told = [("bedroom", Room, 0), ("piano", Landmark, 2), ("turn left", Turn, 4), ("lamp", Landmark, 6)];
         let (before, after) = (mentions(BASE, &TOLD), mentions(text, &told));
@@ -164,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_material_only_the_word_changes() {
+    fn check_changed_material_lets_only_the_word_and_its_article_change() {
         let of = |text: &'static str| Written { text, mentions: &[], last_frame: 0 };
         let base = of("Pass a red sofa and stop.");
         assert_eq!(material(base, of("Pass an orange sofa and stop."), "red", "orange"), Outcome::Holds);

@@ -1,4 +1,4 @@
-//! Paths that are walked the other way round.
+//! The check for a path that is walked in the opposite direction.
 
 use super::{Outcome, Written};
 use crate::facts::turn_told;
@@ -9,8 +9,8 @@ use wayword_language::{
     reading::{What, read},
 };
 
-/// Back along the path one turns as often, to the other sides in reverse order; rooms and floors that both texts tell once come
-/// in reverse order; and up is down.
+/// Checks that on the way back the turns go to the other sides in reverse order, that climbs are reversed too, and that rooms and
+/// floors that each text names once come in reverse order.
 #[must_use]
 pub fn reverse(base: Written<'_>, changed: Written<'_>) -> Outcome {
     let (there, back) = (Told::of(base), Told::of(changed));
@@ -42,7 +42,7 @@ pub fn reverse(base: Written<'_>, changed: Written<'_>) -> Outcome {
     Outcome::Holds
 }
 
-/// What a text tells of a way.
+/// The turns, climbs, rooms and floors that a text describes, in its order.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Told {
     turns: Vec<Side>,
@@ -51,7 +51,7 @@ struct Told {
     floors: Vec<String>,
 }
 
-/// A room that a text names, and the frame of which it speaks.
+/// A room that a text names, and the frame of its mention.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Room {
     name: String,
@@ -69,7 +69,7 @@ impl Told {
                 What::Floor(floor) => told.floors.extend(floor.number.map(|number| number.to_string())),
                 What::Place(place) if place.is_room => {
                     let name = room_name(&place.name).unwrap_or(&place.name).to_owned();
-                    // The stairs are told as a climb.
+                    // Stairs are already counted as a climb.
                     if name != "stairs" && told.rooms.last().is_none_or(|room| room.name != name) {
                         let is_it =
                             |mention: &&Mention| mention.span[0] < event.span[1] && event.span[0] < mention.span[1];
@@ -85,7 +85,8 @@ impl Told {
     }
 }
 
-/// The rooms that both texts tell once, as either has them. Two of one name between which one passes another room are two rooms.
+/// The rooms that each text names exactly once, in the order of either text. If another room lies between the two mentions of a
+/// name, these are two different rooms, and the name is left out.
 fn rooms_of_both(there: &[Room], back: &[Room], last_frame: usize) -> [Vec<String>; 2] {
     let names = |rooms: &[Room]| rooms.iter().map(|room| room.name.clone()).collect::<Vec<String>>();
     let from_the_start = |room: &Room| Some((room.name.clone(), last_frame.saturating_sub(room.frame?)));
@@ -101,14 +102,14 @@ fn rooms_of_both(there: &[Room], back: &[Room], last_frame: usize) -> [Vec<Strin
     both(&names(there), &names(back)).map(|names| names.into_iter().filter(is_one).collect())
 }
 
-/// Whether a text speaks of two rooms at frames that are not beside each other, where it is known: one who stands in a door may be
-/// in either.
+/// Whether a text mentions two rooms at frames that are not neighbours, if the frames are known. At neighbouring frames the order is
+/// open, because a walker in a doorway may be in either room.
 fn apart(rooms: &[Room], one: &str, other: &str) -> Option<bool> {
     let frame = |name: &str| rooms.iter().find(|room| room.name == name)?.frame;
     Some(frame(one)?.abs_diff(frame(other)?) > 1)
 }
 
-/// What both lists hold just once, as either has it.
+/// The names that occur exactly once in each list, in the order of either list.
 fn both(there: &[String], back: &[String]) -> [Vec<String>; 2] {
     let once = |list: &[String], name: &String| list.iter().filter(|other| *other == name).count() == 1;
     let shared = |list: &[String]| {
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_said_what_differs_on_the_way_back() {
+    fn check_reversed_path_names_what_differs_on_the_way_back() {
         let differs = [
             ("Leave the kitchen, go down the stairs, turn right and stop in the bedroom.", "turns"),
             ("Leave the kitchen. Turn left, go up the stairs, turn right and stop in the bedroom.", "climbs"),

@@ -56,7 +56,7 @@ fn frames_are_at_equal_distances_and_keep_what_falls_on_them() {
 }
 
 #[test]
-fn an_arrival_from_elsewhere_forgets_on_which_side_the_target_is() {
+fn an_arrival_from_another_direction_drops_the_side_of_the_target() {
     let cut = spaced(&bent(), 100.0).path;
     assert_eq!(cut.frames.len(), 2);
     assert_eq!(cut.target.unwrap().told_by, [Distinction::Colour { colour: "red".to_owned() }]);
@@ -69,13 +69,13 @@ fn thinning_keeps_frames_that_there_are() {
 }
 
 #[test]
-fn start_headings() {
+fn start_heading_turns_the_first_frame_and_along_removes_the_turn() {
     assert!((start_heading(&bent(), -90.0).path.frames[0].pose.heading.deg() - 270.0).abs() < 1e-9);
     assert!((along(&bent()).path.frames[0].pose.heading.deg() - 90.0).abs() < 1e-9);
 }
 
 #[test]
-fn of_an_unknown_motion_only_the_order_and_the_number_of_frames_can_change() {
+fn unknown_motion_lets_only_order_and_number_of_frames_change() {
     let unknown = Path { motion: Motion::Unknown, ..bent() };
     for changed in [spaced(&unknown, 0.5), start_heading(&unknown, 9.0), along(&unknown)] {
         assert_eq!(changed, unchanged(&unknown));
@@ -86,7 +86,7 @@ fn of_an_unknown_motion_only_the_order_and_the_number_of_frames_can_change() {
 
 proptest! {
     #[test]
-    fn what_is_dropped_stays_dropped_at_a_higher_dose(seed: u64, low in 0.0..100.0f64, high in 0.0..100.0f64) {
+    fn dropped_frames_stay_dropped_at_a_higher_dose(seed: u64, low in 0.0..100.0f64, high in 0.0..100.0f64) {
         let (low, high) = (low.min(high), low.max(high));
         let long: Vec<[f64; 3]> = (0..30).map(|step| [f64::from(step), 0.0, 1.5]).collect();
         let [few, many] = [low, high].map(|percent| dropped(&path(&long), percent, seed).base_frame_of);

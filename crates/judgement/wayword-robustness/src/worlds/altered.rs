@@ -1,4 +1,5 @@
-//! A platform whose world is another one, altered.
+//! Wraps a platform so that its world appears altered: [`Altered`] forwards each request to the original platform and maps poses,
+//! views and paths between the two worlds.
 
 use super::labels::with_truth;
 use std::{collections::BTreeSet, path::PathBuf, sync::Arc};
@@ -7,21 +8,21 @@ use wayword_core::{
     PlatformError, Pose, SceneId, View, ViewpointGraph, ViewpointId, Way, graph::GraphError,
 };
 
-/// What is done to a world. Everything that it does not name stays as it is.
+/// An alteration of a world. By default every method leaves its argument unchanged.
 ///
-/// "Before" is the world as the platform has it, "after" the altered one.
+/// "Before" is the world of the original platform, "after" the altered one.
 pub trait Alter: Send + Sync {
-    /// Where a place lies after the change, metres, world frame.
+    /// Maps a position to the altered world, metres, world frame.
     fn place_after(&self, before: DVec3) -> DVec3 {
         before
     }
 
-    /// Where a place lay before the change: the inverse of [`place_after`](Self::place_after).
+    /// Maps a position back: the inverse of [`place_after`](Self::place_after).
     fn place_before(&self, after: DVec3) -> DVec3 {
         after
     }
 
-    /// A direction after the change.
+    /// Maps a direction to the altered world.
     fn heading_after(&self, before: Heading) -> Heading {
         before
     }
@@ -31,38 +32,39 @@ pub trait Alter: Send + Sync {
         after
     }
 
-    /// Where the eye stands before the change, and where it looks from there, for somebody who looks after it.
+    /// The frame and the gaze in the original world from which a view of the altered world is made.
     fn look_before(&self, _scene: &SceneId, from: &Frame, gaze: Gaze) -> (Frame, Gaze) {
         let gaze = Gaze { heading: self.heading_before(gaze.heading), ..gaze };
         (self.frame_before(from), gaze)
     }
 
-    /// What is seen after the change, made of what was seen before it.
+    /// Makes the view of the altered world from the view of the original one.
     ///
     /// # Errors
-    /// When such a view cannot be made.
+    /// When the view cannot be made.
     fn view_after(&self, _look: Look<'_>, before: View) -> Result<View, PlatformError> {
         Ok(before)
     }
 
-    /// Whether an eye that looks from elsewhere is still in the room of the frame, so that the room is asked for there.
+    /// Whether the room of a view is that of the frame, although `look_before` moves the eye. The room is then looked up at the frame.
     fn keeps_room(&self) -> bool {
         false
     }
 
-    /// How far away is what the view shows; `None` where the change leaves that open.
+    /// The depths of a view in the altered world; `None` if the alteration cannot give them.
     fn depth_after(&self, before: Depth) -> Option<Depth> {
         Some(before)
     }
 
-    /// A frame before the change.
+    /// Maps a frame back to the original world.
     fn frame_before(&self, after: &Frame) -> Frame {
         let Pose { position, heading, elevation_rad } = after.pose;
         let pose = Pose { position: self.place_before(position), heading: self.heading_before(heading), elevation_rad };
         Frame { pose, ..after.clone() }
     }
 
-    /// A path after the change. How its target is told from other things is left open, because that may change.
+    /// Maps a path to the altered world. It drops the words that distinguish the target from similar things, because they may no longer
+    /// be right.
     fn path_after(&self, before: Path) -> Path {
         let frame = |frame: Frame| {
             let Pose { position, heading, elevation_rad } = frame.pose;
@@ -79,14 +81,14 @@ pub trait Alter: Send + Sync {
     }
 }
 
-/// Who looks, and where, after the change.
+/// The scene, the frame and the gaze of a request, in the altered world.
 #[derive(Debug, Clone, Copy)]
 pub struct Look<'a> {
     /// The scene.
     pub scene: &'a SceneId,
-    /// Where the eye stands.
+    /// The position of the eye.
     pub from: &'a Frame,
-    /// Where it looks.
+    /// The direction and width of the view.
     pub gaze: Gaze,
 }
 
@@ -98,7 +100,7 @@ pub struct Altered<P, A> {
 }
 
 impl<P: Platform, A: Alter> Altered<P, A> {
-    /// A platform's world, altered.
+    /// Wraps a platform.
     pub fn new(platform: P, alter: A) -> Self {
         Self { platform, alter }
     }
@@ -203,7 +205,7 @@ impl<P: Platform, A: Alter> Platform for Altered<P, A> {
     }
 }
 
-/// A frame's place as text, by which draws are made.
+/// The place of a frame as text, which serves as a key for random draws.
 pub(super) fn keyed(frame: &Frame) -> String {
     let (bits, viewpoint) = frame.place();
     let [x, y, z] = bits;

@@ -1,11 +1,11 @@
-//! Cameras of another height or width.
+//! Changes of the camera's height and field of view.
 
 use super::Alter;
 use wayword_core::{DVec3, Frame, Gaze, SceneId};
 
-/// An eye at another height over the floor. Only the eye that looks is moved: frames, ways and rooms stay as they are.
+/// A camera at another height over the floor. Only the eye is moved: frames, routes and rooms stay as they are.
 ///
-/// A platform refuses a place at which it knows no room or ground, so it must take an eye that is lower than its own.
+/// Platforms refuse positions without a room or ground. They must therefore accept an eye that is lower than their own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraHeight {
     /// Height of the eye that looks, metres over the floor.
@@ -14,9 +14,9 @@ pub struct CameraHeight {
     pub eye_m: f64,
 }
 
-/// Views of another width. A view says how wide it is: where a platform cannot look so far, it is narrower.
+/// A camera with another field of view. A platform with a narrower limit returns narrower views; each view contains its width.
 ///
-/// It decides how wide the platform looks, so it goes around a [`Tilt`](super::Tilt), which has to look wider.
+/// It wraps a [`Tilt`](super::Tilt) from outside, because a tilted view has to be made from a wider one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldOfView {
     /// Horizontal field of view, degrees.
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn a_narrower_view_shows_no_more_and_says_how_wide_it_is() {
+    fn a_narrower_view_shows_no_more_and_contains_its_width() {
         let (scene, path) = walk();
         for frame in &path.frames {
             let gaze = Gaze::quarter(frame.pose.heading);
@@ -62,7 +62,7 @@ mod tests {
             assert!((narrow.horizontal_fov_rad.to_degrees() - 60.0).abs() < 1e-9);
             let outside = |label: &Label| gaze.heading.turn_to(label.heading).abs() > 30f64.to_radians();
             assert!(!labels(&narrow).iter().any(outside));
-            // In a narrow view things are larger, so it may label what is too small for a label in the wide one.
+            // In a narrow view things are larger, so it may have labels for things that are too small in the wide one.
             let near = |view: &View| {
                 let near = |label: &&Label| label.distance_m.is_some_and(|far_m| far_m < 3.0);
                 labels(view).iter().filter(near).map(|label| label.object.clone()).collect::<BTreeSet<_>>()

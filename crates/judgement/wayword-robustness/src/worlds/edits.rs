@@ -1,4 +1,4 @@
-//! Which thing is removed, added or recoloured for a text.
+//! Chooses the thing that is removed, added or recoloured for a text: one that the text mentions, or a new one near its path.
 
 use super::{Added, Recoloured, Removed};
 use std::collections::BTreeSet;
@@ -7,24 +7,24 @@ use wayword_core::{
 };
 use wayword_language::lexicon::{Class, agree, same_colour, thing};
 
-/// What is added: things that people name as landmarks. The first that is not seen along the path is taken.
+/// Names of things to add, which people use as landmarks. The first one that is not visible along the path is taken.
 const ADDED: [&str; 5] = ["piano", "fireplace", "bookshelf", "armchair", "wardrobe"];
-/// How far ahead of a frame, and how far to its right, a thing is added, metres.
+/// Distances ahead of a frame and to its right at which a thing is added, metres.
 const ADDED_AT_M: (f64, f64) = (1.2, 0.9);
-/// How far below the eye its centre is, metres.
+/// Distance of its centre below the eye, metres.
 const ADDED_BELOW_M: f64 = 0.8;
-/// A thing that is added is seen from no farther than this, metres.
+/// Largest distance from which an added thing is visible, metres.
 const SEEN_M: f64 = 4.0;
-/// A colour has so many words at most.
+/// Most words of a colour.
 const COLOUR_WORDS: usize = 2;
-/// Colours that a thing may get: the first that neither it nor a namesake has.
+/// Colours to give to a thing: the first one that neither it nor a namesake has is taken.
 const COLOURS: [&str; 5] = ["purple", "orange", "pink", "turquoise", "red"];
 
-/// What is labelled along a path: for each frame the labels all around it.
+/// The labels along a path: for each frame, those of all views around it.
 #[derive(Debug, Clone, Default)]
 pub struct Labelled(Vec<Vec<Label>>);
 
-/// A text whose things are changed.
+/// A text with its mentions and its path, for which a thing is to be changed.
 #[derive(Debug, Clone, Copy)]
 pub struct Telling<'a> {
     /// Its words.
@@ -35,18 +35,18 @@ pub struct Telling<'a> {
     pub path: &'a Path,
 }
 
-/// A thing that a text tells.
+/// A thing that a text mentions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Thing {
-    /// The words of the text.
+    /// Its name in the words of the text.
     pub words: String,
-    /// Its name as the labels have it.
+    /// Its name in the labels.
     pub name: String,
-    /// It and its namesakes in sight of the path.
+    /// The object itself and its namesakes that are visible from the path.
     pub objects: BTreeSet<ObjectId>,
-    /// The frames that see one of these.
+    /// The frames from which one of these is visible.
     pub seen_from: Vec<usize>,
-    /// The word for the colour that the text tells of it.
+    /// The word for its colour in the text, if there is one.
     pub colour: Option<String>,
 }
 
@@ -59,7 +59,7 @@ impl Labelled {
         Self(panoramas.iter().map(around).collect())
     }
 
-    /// The landmarks that a text tells and that are labelled where it tells them. Its target is none of them.
+    /// The landmarks that a text mentions and that have a label at the frame of the mention. The target is left out.
     #[must_use]
     pub fn told(&self, telling: Telling<'_>) -> Vec<Thing> {
         let Telling { text, mentions, path } = telling;
@@ -74,7 +74,8 @@ impl Labelled {
         told.filter(|thing| can_go(&thing.name) && !is_target(&thing.name)).collect()
     }
 
-    /// A thing of that name, in words of a text. `said` are these and the few before them.
+    /// Collects the objects of a name along the path. `words` are the text's name for it, and `said` has in addition the few words before
+    /// them, in which the colour is looked for.
     fn thing(&self, words: &str, name: &str, said: &str) -> Thing {
         let (mut objects, mut seen_from, mut colours) = (BTreeSet::new(), Vec::new(), BTreeSet::new());
         for (frame, labels) in self.0.iter().enumerate() {
@@ -91,19 +92,19 @@ impl Labelled {
         Thing { words: words.to_owned(), name: name.to_owned(), objects, seen_from, colour }
     }
 
-    /// The things of a name and colour that are labelled anywhere along the path.
+    /// The objects of a name and colour with a label anywhere along the path.
     fn of_colour(&self, name: &str, colour: &str) -> BTreeSet<ObjectId> {
         let is_it = |label: &&Label| agree(&label.name, name) && label.colour.as_deref() == Some(colour);
         self.0.iter().flatten().filter(is_it).map(|label| label.object.clone()).collect()
     }
 
-    /// Whether a thing of that name has a colour that people would call by such a word.
+    /// Whether any thing of that name has a colour that people would describe by this word.
     fn has_colour(&self, name: &str, colour: &str) -> bool {
         let mut alike = self.0.iter().flatten().filter(|label| agree(&label.name, name));
         alike.any(|label| label.colour.as_ref().is_some_and(|other| same_colour(other, colour)))
     }
 
-    /// A thing that the text tells, drawn by the seed, and the world without it and its namesakes.
+    /// Draws a thing that the text mentions, and returns it with the change that removes it and its namesakes.
     #[must_use]
     pub fn without(&self, telling: Telling<'_>, seed: u64) -> Option<(Thing, Removed)> {
         let told = self.told(telling);
@@ -112,8 +113,8 @@ impl Labelled {
         Some((thing, Removed { objects }))
     }
 
-    /// A thing whose colour the text tells, drawn by the seed, and the world in which it and its namesakes of that colour have
-    /// another, which no namesake has.
+    /// Draws a thing with a colour in the text, and returns it with the change that gives it and its namesakes of that colour another
+    /// one, which no namesake has.
     #[must_use]
     pub fn recoloured(&self, telling: Telling<'_>, seed: u64) -> Option<(Thing, Recoloured)> {
         let told: Vec<Thing> = self.told(telling).into_iter().filter(|thing| thing.colour.is_some()).collect();
@@ -123,7 +124,7 @@ impl Labelled {
         Some((thing, Recoloured { objects, colour: (*colour).to_owned() }))
     }
 
-    /// A thing that nothing along the path is called, beside a frame that the seed draws, and the world with it.
+    /// Chooses a thing with a name that no label along the path has, and returns it with the change that puts it next to a drawn frame.
     #[must_use]
     pub fn with_one_more(&self, path: &Path, seed: u64) -> Option<(Thing, Added)> {
         let is_new = |name: &&&str| !self.0.iter().flatten().any(|label| agree(&label.name, name));
@@ -153,14 +154,14 @@ impl Labelled {
     }
 }
 
-/// Whether a thing can be taken away: doors and stairs stay where the way leads through them.
+/// Whether things of this name can be removed. Doors, stairs and parts of the building cannot, because paths may lead through them.
 #[must_use]
 pub fn can_go(name: &str) -> bool {
     let is_built_in = |class: Class| matches!(class, Class::Door | Class::Stairs | Class::Fabric);
     thing(name).is_none_or(|thing| !is_built_in(thing.class))
 }
 
-/// One of so many, by the seed and the path's name; `None` of none.
+/// Draws an index below `of` by the seed and the path's id; `None` if `of` is 0.
 fn drawn(seed: u64, purpose: &str, path: &Path, of: usize) -> Option<usize> {
     let number = derive(seed, &["robustness", purpose, &path.id]);
     number.checked_rem(of as u64).and_then(|at| usize::try_from(at).ok())

@@ -1,4 +1,5 @@
-//! A scripted eye: it answers from what is known at the same pose, and is as good as it is told to be.
+//! A scripted eye in place of a vision model: it reports the true labels of the same pose, but with a given recall and a given share of
+//! mistakes. So experiments can show how an observer of known quality affects the texts.
 
 mod draws;
 mod sides;
@@ -14,35 +15,34 @@ use wayword_core::{
     PlatformError, SceneId, View, ViewpointGraph, ViewpointId, Way,
 };
 
-/// How good a scripted eye is. A strength is that of a change ([`Change::strength`](crate::Change::strength)): 0 where
-/// nothing is changed, 1 at the end of the dose's range.
+/// How good a scripted eye is, as a function of the strength of a change ([`Change::strength`](crate::Change::strength)): 0 without a
+/// change, 1 at the end of the dose's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EyeOf {
-    /// Share of the labels that it sees at strength 0.
+    /// Share of the labels that it reports at strength 0.
     pub recall: f64,
-    /// Share of the labels that it sees and calls by another name, at strength 0.
+    /// Share of the reported labels that get a wrong name at strength 0.
     pub mistakes: f64,
     /// Share of its recall that is lost at strength 1.
     pub falls: f64,
-    /// What is added to its mistakes at strength 1.
+    /// Share of mistakes that is added at strength 1.
     pub rises: f64,
-    /// Whether it draws the side on which a thing lies instead of seeing it.
+    /// Whether it guesses at random on which side a thing lies.
     pub guesses_sides: bool,
 }
 
-/// A platform whose labels are what a scripted eye answers.
+/// A platform with the labels that a scripted eye reports.
 ///
-/// Pictures, graph, paths and poses are those of `pictures`, any platform. The eye gets the labels and the room of
-/// `oracle`, which knows what is at the same pose. Of each label it draws whether it is seen, whether it is called by
-/// another name, and where the eye guesses sides, whether it lies left or right. `lists_objects` stays the oracle's:
-/// the eye does not know what it missed.
+/// Pictures, graph, paths and poses come from `pictures`, which can be any platform. The true labels and rooms come from `oracle`,
+/// which has to know them at the same poses. For each label the eye draws whether it reports it, whether it gives a wrong name, and, if
+/// it guesses sides, whether the thing lies left or right. `lists_everything` is the oracle's: the eye does not know what it missed.
 ///
-/// The draws are by the seed, the scene, the object and the distance over the ground, which differs from frame to
-/// frame. None of that changes where the world is mirrored or turned, the eye raised or its view widened. A label is
-/// seen when its number is below the recall, so an eye of lower recall sees a subset.
+/// The draws depend on the seed, the scene, the object and the horizontal distance to it, which differs from frame to frame. None of
+/// these change when the world is mirrored or turned, the eye raised or its view widened, so the eye's errors stay the same. A label
+/// is reported if its number is below the recall, so an eye with lower recall reports a subset.
 ///
-/// A change of the world goes inside, around both `pictures` and `oracle`. Around the eye, a mirror would mirror its
-/// guesses too, and so hide that they are guesses.
+/// A change of the world has to wrap both `pictures` and `oracle`. If it wrapped the eye, a mirror would also mirror the eye's
+/// guesses, and so hide that they are guesses.
 #[derive(Debug, Clone)]
 pub struct ScriptedEye<P, O> {
     pictures: P,
@@ -54,16 +54,16 @@ pub struct ScriptedEye<P, O> {
 }
 
 impl EyeOf {
-    /// An eye that misses nothing and makes no mistakes, at any strength.
+    /// An eye that reports all labels and makes no mistakes, at any strength.
     pub const PERFECT: Self = Self { recall: 1.0, mistakes: 0.0, falls: 0.0, rises: 0.0, guesses_sides: false };
 
-    /// Its recall: `recall * (1 - falls * strength)`, kept within 0 and 1.
+    /// Its recall at a strength: `recall * (1 - falls * strength)`, limited to 0 to 1.
     #[must_use]
     pub fn recall_at(&self, strength: f64) -> f64 {
         (self.recall * (1.0 - self.falls * strength)).clamp(0.0, 1.0)
     }
 
-    /// Its share of mistakes: `mistakes + rises * strength`, kept within 0 and 1.
+    /// Its share of mistakes at a strength: `mistakes + rises * strength`, limited to 0 to 1.
     #[must_use]
     pub fn mistakes_at(&self, strength: f64) -> f64 {
         (self.mistakes + self.rises * strength).clamp(0.0, 1.0)
@@ -82,14 +82,14 @@ impl<P: Platform, O: Platform> ScriptedEye<P, O> {
         Self { strength, ..self }
     }
 
-    /// The eye where a scene of `pictures` has another name at the oracle, as a recording of a house has.
+    /// The eye, if a scene of `pictures` has another name at the oracle, as a recording of a house has.
     #[must_use]
     pub fn with_scene(mut self, of_pictures: SceneId, of_oracle: SceneId) -> Self {
         self.oracle_scene_of.insert(of_pictures, of_oracle);
         self
     }
 
-    /// What the eye makes of what `pictures` shows; `look` asks the oracle. Where no camera looked it sees nothing.
+    /// Makes the eye's view from the view of `pictures`; `look` asks the oracle. A blank view stays as it is: no camera looked there.
     fn seen(
         &self,
         scene: &SceneId,
@@ -118,7 +118,7 @@ impl<P: Platform, O: Platform> ScriptedEye<P, O> {
         Ok(View::new(shown.pose, shown.horizontal_fov_rad, shown.image, Some(truth)))
     }
 
-    /// A label as the eye gives it; `None` where it misses it.
+    /// The label that the eye reports; `None` if it misses it.
     fn answered(&self, draws: &Draws<'_>, label: Label) -> Option<Label> {
         if draws.uniform("seen", &label) >= self.eye.recall_at(self.strength) {
             return None;
@@ -129,7 +129,7 @@ impl<P: Platform, O: Platform> ScriptedEye<P, O> {
     }
 }
 
-/// Labels whose boxes fit the picture: in a picture of another size than the oracle's they have no place.
+/// Removes the boxes of the labels if the picture has another size than the oracle's, because then they do not fit.
 fn fitting(mut labels: Vec<Label>, known: Option<&Image>, shown: Option<&Image>) -> Vec<Label> {
     let size = |image: &Image| [image.width_px(), image.height_px()];
     if let (Some(known), Some(shown)) = (known, shown)
@@ -166,7 +166,7 @@ impl<P: Platform, O: Platform> Platform for ScriptedEye<P, O> {
         self.seen(scene, from, shown, |scene, gaze| self.oracle.look(scene, from, gaze))
     }
 
-    /// The picture is asked for all the same, because it alone tells whether a camera looked.
+    /// The picture is still needed, because only a blank picture shows that no camera looked there.
     fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
         let shown = self.pictures.look(scene, from, gaze)?;
         let mut view =

@@ -1,13 +1,13 @@
-//! Views with other labels.
+//! Replaces the ground truth of views.
 
 use wayword_core::{GroundTruth, Label, View};
 
-/// A view with other labels; one without ground truth stays as it is.
+/// Changes the labels of a view. A view without ground truth stays as it is.
 pub(super) fn with_labels(view: View, change: impl FnOnce(&mut Vec<Label>)) -> View {
     with_truth(view, |truth| change(&mut truth.labels))
 }
 
-/// A view of which something else is known; one without ground truth stays as it is.
+/// Changes the ground truth of a view. A view without ground truth stays as it is.
 pub(super) fn with_truth(view: View, change: impl FnOnce(&mut GroundTruth)) -> View {
     let Some(mut truth) = view.ground_truth().cloned() else { return view };
     change(&mut truth);

@@ -1,4 +1,4 @@
-//! Worlds that are changed: wrappers over any platform.
+//! Changes of worlds, cameras and pictures, as wrappers over any platform.
 
 mod altered;
 mod camera;

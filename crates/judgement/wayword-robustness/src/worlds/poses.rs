@@ -1,4 +1,4 @@
-//! A log whose headings are wrong.
+//! Adds errors to the headings in the log of a path, as a robot with a bad compass would write them.
 
 use super::{
     Alter,
@@ -8,9 +8,8 @@ use super::{
 use crate::draws::normal;
 use wayword_core::{DVec3, Frame, Gaze, Label, Motion, Path, PlatformError, Pose, SceneId, View};
 
-/// The log's headings are off by a gaussian error that is drawn for each place. What is seen is seen from the true
-/// heading, and written down under the wrong one: a thing ahead of the camera stays ahead of it, and lies somewhere
-/// else in the world.
+/// Headings in the log with a gaussian error, which is drawn for each place. The camera looks along the true heading, and the view is
+/// logged under the wrong one. So a thing ahead of the camera stays ahead of it, but seems to lie elsewhere in the world.
 ///
 /// "Before" is the truth, "after" the log. An error is drawn by the seed, the scene and the frame's
 /// [`place`](Frame::place), so the errors of two values of `deg` with one seed are proportional.
@@ -23,14 +22,14 @@ pub struct HeadingNoise {
 }
 
 impl HeadingNoise {
-    /// By how much the log's heading at a frame is off, radians, positive to the right.
+    /// The error of the log's heading at a frame, radians, positive to the right.
     #[must_use]
     pub fn error_rad(&self, scene: &SceneId, frame: &Frame) -> f64 {
         self.deg.to_radians() * normal(self.seed, &["heading noise", scene.as_str(), &keyed(frame)])
     }
 
-    /// The path as the log has it, made of the true one. Positions stay as they are; of the target it forgets what
-    /// depends on the pose of somebody who arrives. A path of unknown motion stays as it is.
+    /// Makes the logged path from the true one. Positions stay as they are. Descriptions of the target that depend on the final pose
+    /// are dropped. A path of unknown motion stays as it is.
     #[must_use]
     pub fn logged(&self, truth: &Path) -> Path {
         let mut log = truth.clone();
@@ -71,7 +70,7 @@ impl Alter for HeadingNoise {
     }
 }
 
-/// A position turned about the vertical through the eye, radians, clockwise seen from above.
+/// Rotates a position about the vertical axis through the eye by `rad` radians, clockwise seen from above.
 fn turned_about(eye: DVec3, position: DVec3, rad: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(rad);
     let offset = position - eye;

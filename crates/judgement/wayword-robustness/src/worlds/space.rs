@@ -1,10 +1,10 @@
-//! A world that is mirrored, and one that is turned.
+//! Mirrored and turned worlds.
 
 use super::{Alter, altered::Look};
 use std::{f64::consts::FRAC_PI_2, sync::Arc};
 use wayword_core::{DVec3, Depth, GroundTruth, Heading, Image, Label, PlatformError, Pose, View};
 
-/// The world mirrored at the plane x = 0: left becomes right, and nothing else changes.
+/// The world mirrored at the plane x = 0: left becomes right, and all distances stay the same.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Mirror;
 
@@ -32,7 +32,7 @@ impl Alter for Mirror {
     fn view_after(&self, _: Look<'_>, before: View) -> Result<View, PlatformError> {
         let width_px = before.image.as_ref().map(|image| f64::from(image.width_px()));
         let label = |mut label: Label| {
-            // Without a picture nobody knows how wide it is, so the box has no place.
+            // Without a picture its width is unknown, so the box cannot be mirrored and is dropped.
             label.box_px =
                 label.box_px.zip(width_px).map(|([x, y, width, height], all)| [all - x - width, y, width, height]);
             label
@@ -69,7 +69,7 @@ impl Alter for QuarterTurn {
     }
 }
 
-/// A view whose pose and labels are carried into the space after a change.
+/// Maps the pose and the labels of a view into the changed space.
 fn moved(space: &impl Alter, before: View, label: impl Fn(Label) -> Label) -> View {
     let truth = before.ground_truth().cloned().map(|truth| GroundTruth {
         labels: truth.labels.into_iter().map(|before| label(label_after(space, before))).collect(),
@@ -91,7 +91,7 @@ fn label_after(space: &impl Alter, before: Label) -> Label {
     }
 }
 
-/// A picture with its columns in reverse order.
+/// Mirrors a picture by reversing its columns.
 fn mirrored(image: &Image) -> Image {
     let mut rgb = Vec::with_capacity(image.rgb().len());
     for row in image.rgb().chunks_exact(image.width_px() as usize * 3) {

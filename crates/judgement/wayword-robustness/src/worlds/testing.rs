@@ -1,4 +1,4 @@
-//! What the tests of changed worlds share.
+//! Helpers for the tests of changed worlds.
 
 use std::{
     collections::BTreeSet,
@@ -59,7 +59,7 @@ pub(crate) fn walk_of(seed: u64) -> (SceneId, Path) {
     (scene, path)
 }
 
-/// What a view lists.
+/// The labels of a view.
 pub(crate) fn labels(view: &View) -> &[Label] {
     &view.ground_truth().unwrap().labels
 }

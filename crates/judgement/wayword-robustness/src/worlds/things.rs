@@ -1,5 +1,5 @@
-//! Worlds with a thing less, a thing more, or a thing of another colour, by their labels. Pictures stay as they are, so
-//! these changes are only for who reads labels.
+//! Worlds with a thing removed, added or recoloured, in their labels only. Pictures stay as they are, so these changes affect only
+//! observers that read labels.
 
 use super::{Alter, altered::Look, labels::with_labels};
 use std::collections::BTreeSet;
@@ -8,7 +8,7 @@ use wayword_core::{Frame, Heading, Label, ObjectId, PlatformError, SceneId, View
 /// A world without some of its objects.
 #[derive(Debug, Clone)]
 pub struct Removed {
-    /// What is gone.
+    /// The removed objects.
     pub objects: BTreeSet<ObjectId>,
 }
 
@@ -17,16 +17,16 @@ pub struct Removed {
 pub struct Added {
     /// The scene that it is in.
     pub scene: SceneId,
-    /// The object, with its name, its colour and its place. Direction and distance are filled in where it is seen.
+    /// The object, with its name, colour and position. Direction and distance are filled in for each view.
     pub object: Label,
-    /// The frames that see it.
+    /// The frames from which it is visible.
     pub seen_from: Vec<Frame>,
 }
 
 /// A world in which objects have another colour.
 #[derive(Debug, Clone)]
 pub struct Recoloured {
-    /// Which.
+    /// The recoloured objects.
     pub objects: BTreeSet<ObjectId>,
     /// The word for their new colour.
     pub colour: String,
@@ -59,7 +59,7 @@ impl Alter for Added {
 }
 
 impl Added {
-    /// Its label in a view that holds it.
+    /// Its label in a view; `None` if the view does not include it.
     fn seen(&self, look: Look<'_>) -> Option<Label> {
         let (eye, position) = (look.from.pose.position, self.object.position?);
         let heading = Heading::towards(eye, position).filter(|heading| look.gaze.holds(*heading))?;

@@ -1,4 +1,4 @@
-//! A camera that looks up or down, or is rolled.
+//! A camera that is pitched up or down, or rolled.
 
 mod resample;
 
@@ -7,25 +7,25 @@ use resample::{GREY, Warp};
 use std::sync::Arc;
 use wayword_core::{DMat3, DVec3, Depth, Frame, Gaze, GroundTruth, Image, Label, PlatformError, SceneId, View};
 
-/// How far a camera may look up or down, and be rolled, degrees.
+/// Largest pitch and roll of a camera, degrees.
 const MOST_PITCH_DEG: f64 = 30.0;
 const MOST_ROLL_DEG: f64 = 45.0;
 
-/// The widest level view that is asked for, radians: the widest that the platforms draw.
+/// The widest level view that is requested, radians. Platforms cannot render wider ones.
 const WIDEST_RAD: f64 = 2.6;
 
-/// Height over width of the pictures of all platforms that draw. It decides how wide a view has to be before the
-/// picture is known; where a picture has another shape, its corners may be grey.
+/// Height over width of the pictures of all platforms that render. It is needed to choose the width of the level view before the
+/// picture exists. If a picture has another shape, its corners may be grey.
 const ASPECT: f64 = 0.75;
 
-/// A tilted pinhole camera. Its picture is made of a wider level view, by the homography of the rotation, so it is
-/// exact but for its sharpness. What the wider view does not reach is grey.
+/// A tilted pinhole camera. Its picture is resampled from a wider level view by the homography of the rotation, so it is exact except
+/// for its sharpness. Parts that the wider view does not cover are grey.
 ///
-/// A label stays where the centre of its box lies within the tilted view's width, and part of the box in the picture;
-/// without a box, the direction counts for the height too. The wider view shows things smaller, so a thing that is
-/// barely large enough for a label may lose it. A tilted view has no depth.
+/// A label is kept if the centre of its box lies within the tilted view's width, and part of the box in the picture. Without a box,
+/// its direction has to lie within the height too. The wider view shows things smaller, so a thing that is barely large enough for a
+/// label may lose it. A tilted view has no depth.
 ///
-/// It goes inside a [`FieldOfView`](super::FieldOfView).
+/// A [`FieldOfView`](super::FieldOfView) wraps it from outside.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tilt {
     pitch_rad: f64,
@@ -74,7 +74,7 @@ impl Tilt {
         self.pitch_rad == 0.0 && self.roll_rad == 0.0
     }
 
-    /// Width of the level view that covers a tilted one, radians, or the widest that there is.
+    /// Width of the level view that covers a tilted one, radians, at most the widest possible.
     fn covering_rad(self, fov_rad: f64) -> f64 {
         if self.is_level() {
             return fov_rad;
@@ -124,7 +124,7 @@ impl Alter for Tilt {
     }
 }
 
-/// The tilted camera's picture, of the same size as the level one.
+/// Resamples the tilted camera's picture, in the size of the level one.
 fn redrawn(warp: &Warp, level: &Image) -> Image {
     let mut rgb = Vec::with_capacity(level.rgb().len());
     for y in 0..level.height_px() {

@@ -1,14 +1,13 @@
-//! What a scripted eye draws of a label.
+//! The random draws of a scripted eye for a label.
 
 use crate::draws::uniform;
 use wayword_core::{Label, SceneId, ViewpointId};
 
-/// The names by which things are called that they do not have.
+/// Names that the eye gives by mistake.
 const WRONG_NAMES: [&str; 12] =
     ["chair", "table", "lamp", "bed", "sofa", "cabinet", "bookshelf", "plant", "mirror", "picture", "rug", "stool"];
 
-/// By what the numbers of one look are drawn. The name of the viewpoint counts where the distance of a label is not
-/// known.
+/// The values on which the draws for one view depend. The viewpoint is used only for labels without a known distance.
 pub(super) struct Draws<'a> {
     pub(super) seed: u64,
     pub(super) scene: &'a SceneId,
@@ -16,21 +15,20 @@ pub(super) struct Draws<'a> {
 }
 
 impl Draws<'_> {
-    /// A label's number for one purpose, in [0, 1). It is the same wherever the label is the same thing at the same
-    /// distance.
+    /// A number in [0, 1) for a label and a purpose. It is the same in all views with the same object at the same distance.
     pub(super) fn uniform(&self, purpose: &str, label: &Label) -> f64 {
         let away = self.away(label);
         uniform(self.seed, &["scripted eye", purpose, self.scene.as_str(), label.object.as_str(), &away])
     }
 
-    /// Another name than the label's.
+    /// Draws a name that differs from the label's.
     pub(super) fn wrong_name(&self, label: &Label) -> &'static str {
         let others: Vec<&str> = WRONG_NAMES.into_iter().filter(|name| *name != label.name).collect();
         let at = self.uniform("wrong name", label) * others.len() as f64;
         others.get(at as usize).copied().unwrap_or(WRONG_NAMES[0])
     }
 
-    /// How far away the thing is over the ground, to a centimetre: what tells the frames apart.
+    /// The horizontal distance of the thing, rounded to a centimetre. It distinguishes the frames from each other.
     fn away(&self, label: &Label) -> String {
         let viewpoint = || self.viewpoint.map_or("", ViewpointId::as_str).to_owned();
         label

@@ -1,14 +1,14 @@
-//! Sides that are guessed.
+//! A scripted eye that guesses on which side a thing lies.
 
 use super::draws::Draws;
 use wayword_core::{DVec3, Frame, Gaze, Heading, Label, PlatformError, View};
 
-/// Gazes nearer than this are one, radians.
+/// Gazes that differ by less than this are equal, radians.
 const SAME_RAD: f64 = 1e-9;
 
-/// What an eye lists of a gaze that draws for each thing whether it lies left or right of the frame's heading. A thing
-/// that is drawn onto its other side is put where it would be if the world were mirrored at that heading. So it may be
-/// seen by another gaze, and what `look` shows there may be seen by this one.
+/// The labels in a view of an eye that draws for each thing whether it lies left or right of the frame's heading. A thing that is drawn
+/// onto the wrong side gets the place that it would have if the world were mirrored at that heading. So it may move into another view,
+/// and things from the mirrored view (`look`) may move into this one.
 pub(super) fn guessed(
     draws: &Draws<'_>,
     from: &Frame,
@@ -46,7 +46,7 @@ impl Axis {
         self.heading.turn_to(heading) > 0.0
     }
 
-    /// A label on the other side of the plane, in a view of this width, pixels, that is mirrored too.
+    /// Mirrors a label at the plane. `width_px` is the width of the view, in which its box is mirrored too.
     fn mirrored_label(&self, label: &Label, width_px: Option<f64>) -> Label {
         let heading = self.mirrored(label.heading);
         let moved = |position: DVec3| {

@@ -4,7 +4,7 @@ use wayword_core::Side;
 
 const GUESSER: EyeOf = EyeOf { guesses_sides: true, ..EyeOf::PERFECT };
 
-/// What is listed along a path, all around each frame: the frame, the object, its name and its side.
+/// The labels along a path, all around each frame: by frame and object, the name and the side.
 fn told(platform: &impl Platform, path: &Path) -> BTreeMap<(usize, ObjectId), (String, Side)> {
     let mut told = BTreeMap::new();
     for (number, frame) in path.frames.iter().enumerate() {
@@ -49,13 +49,13 @@ fn mirrored(side: Side) -> Side {
 }
 
 #[test]
-fn a_mirror_exposes_who_guesses_sides_and_not_who_sees_them() {
+fn a_mirror_exposes_an_eye_that_guesses_sides() {
     assert!(share_on_expected_side(EyeOf::PERFECT, Mirror, mirrored) > 0.98);
     assert!(share_on_expected_side(GUESSER, Mirror, mirrored) < 0.6);
 }
 
 #[test]
-fn a_turn_changes_nothing_for_either() {
+fn a_turn_does_not_change_the_sides_of_any_eye() {
     assert!(share_on_expected_side(EyeOf::PERFECT, QuarterTurn, |side| side) > 0.98);
     assert!(share_on_expected_side(GUESSER, QuarterTurn, |side| side) > 0.98);
 }
@@ -84,7 +84,7 @@ fn a_guesser_lists_the_same_things_with_headings_and_places_that_agree() {
 }
 
 #[test]
-fn recall_falls_monotonely_and_what_is_seen_less_well_is_a_subset() {
+fn an_eye_with_lower_recall_reports_a_subset() {
     let of = EyeOf { recall: 0.95, falls: 1.0, ..EyeOf::PERFECT };
     let (_, path) = walk();
     let all = told(&House, &path);

@@ -1,10 +1,10 @@
-//! A gaussian blur.
+//! Blurs a picture by a gaussian, in linear light.
 
 use super::light::{linear_from_srgb, srgb_from_linear};
 use wayword_core::{Image, image::WrongPixelCount};
 
-/// A picture blurred by a gaussian, which is cut off at three standard deviations. Beyond its edge the picture goes on
-/// with the pixels of the edge.
+/// Blurs a picture by a gaussian that is cut off at three standard deviations. Outside the picture, the pixels of its edge are
+/// repeated.
 pub(super) fn blurred(image: &Image, sigma_px: f64) -> Result<Image, WrongPixelCount> {
     let kernel = kernel(sigma_px);
     let [width, height] = [image.width_px(), image.height_px()].map(|side| side as usize);
@@ -15,7 +15,7 @@ pub(super) fn blurred(image: &Image, sigma_px: f64) -> Result<Image, WrongPixelC
     Image::new(image.width_px(), image.height_px(), along_columns.into_iter().map(srgb_from_linear).collect())
 }
 
-/// The weights from the middle outwards, which sum to 1 over both sides.
+/// The weights from the middle outwards. Over both sides they sum to 1.
 fn kernel(sigma_px: f64) -> Vec<f64> {
     let sigma_px = sigma_px.max(0.0);
     let reach = libm::ceil(3.0 * sigma_px) as usize;
@@ -28,8 +28,8 @@ fn kernel(sigma_px: f64) -> Vec<f64> {
     half.into_iter().map(|weight| weight / sum).collect()
 }
 
-/// Three interleaved colours convolved along one direction, which has so many pixels at such a stride, on each line of
-/// the other direction.
+/// Convolves three interleaved colours along one direction: `count` pixels at a `stride`, on each of `lines` lines, which begin
+/// `next_line` values apart.
 fn convolved(
     light: &[f64],
     kernel: &[f64],

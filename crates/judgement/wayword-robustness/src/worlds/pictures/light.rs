@@ -1,8 +1,8 @@
-//! Linear light, its amount and its colour.
+//! Converts between sRGB and linear light, and changes the amount and colour of the light.
 
 use wayword_core::{Image, image::WrongPixelCount};
 
-/// The colour temperature to which cameras are set, kelvin.
+/// The colour temperature for which cameras are balanced, kelvin.
 const SET_TO_K: f64 = 6500.0;
 
 /// Linear light of an sRGB value, 0 to 1 (IEC 61966-2-1).
@@ -11,14 +11,14 @@ pub(super) fn linear_from_srgb(level: u8) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
 }
 
-/// The sRGB value of linear light (IEC 61966-2-1). What is brighter than white is white.
+/// The sRGB value of linear light (IEC 61966-2-1). Light brighter than white becomes white.
 pub(super) fn srgb_from_linear(light: f64) -> u8 {
     let light = light.clamp(0.0, 1.0);
     let value = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055 };
     (value * 255.0 + 0.5) as u8
 }
 
-/// A picture whose linear light is multiplied by one number for each of red, green and blue.
+/// Multiplies the linear light of a picture by one factor for each of red, green and blue.
 pub(super) fn lit(image: &Image, gains: [f64; 3]) -> Result<Image, WrongPixelCount> {
     let table = |gain: f64| -> Vec<u8> {
         (0..=u8::MAX).map(|level| srgb_from_linear(gain * linear_from_srgb(level))).collect()
@@ -28,8 +28,8 @@ pub(super) fn lit(image: &Image, gains: [f64; 3]) -> Result<Image, WrongPixelCou
     Image::new(image.width_px(), image.height_px(), image.rgb().chunks_exact(3).flat_map(pixel).collect())
 }
 
-/// What light of a colour temperature does to linear red, green and blue of a camera that is set to 6500 K: von Kries'
-/// rule on the camera's own colours, scaled so that a grey keeps its luminance.
+/// The factors for linear red, green and blue under light of a colour temperature, for a camera that is balanced for 6500 K. They follow
+/// von Kries' rule in the camera's own colours, and are scaled so that a grey keeps its luminance.
 pub(super) fn gains(kelvin: f64) -> [f64; 3] {
     let (light, set) = (blackbody(kelvin), blackbody(SET_TO_K));
     let gains: [f64; 3] = std::array::from_fn(|colour| (light[colour] / set[colour]).max(0.0));

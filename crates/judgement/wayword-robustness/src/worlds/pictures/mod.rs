@@ -1,4 +1,4 @@
-//! Pictures that are changed. What is known beside the picture stays as it is.
+//! Changes of pictures: exposure, colour of the light, blur, noise and JPEG compression. Labels and other data stay as they are.
 
 mod blur;
 mod jpeg;
@@ -27,17 +27,17 @@ pub enum PictureChange {
         /// Standard deviation, pixels; 0 changes nothing.
         sigma_px: f64,
     },
-    /// Gaussian noise on each pixel and colour. It is drawn by the scene, the place, the gaze and the seed: who looks
-    /// twice sees the same, and the noise of two doses is proportional where nothing is cut off.
+    /// Gaussian noise on each pixel and colour. It depends on the scene, the place, the gaze and the seed, so the same view always
+    /// has the same noise. The noise of two doses is proportional, except where values are clipped.
     Noise {
         /// Standard deviation, per cent of full scale; 0 changes nothing.
         percent: f64,
         /// The seed of the draws.
         seed: u64,
     },
-    /// A JPEG file between the camera and who sees.
+    /// Compression and decompression as a JPEG file.
     Jpeg {
-        /// Quality, 1 to 99, as the IJG's library counts it; 100 stands for no such file, and changes nothing.
+        /// Quality on the scale of the IJG's library, 1 to 99; 100 makes no file and leaves the picture as it is.
         quality_percent: u8,
     },
 }

@@ -1,4 +1,4 @@
-//! Gaussian noise.
+//! Adds gaussian noise to a picture.
 
 use crate::{
     draws::normal_pair,
@@ -7,14 +7,14 @@ use crate::{
 use rand::Rng;
 use wayword_core::{Image, image::WrongPixelCount, rng};
 
-/// The draws for what one look shows.
+/// The random generator for the picture of one view.
 pub(super) fn dice(look: Look<'_>, seed: u64) -> impl Rng {
     let gaze = [look.gaze.heading.rad(), look.gaze.horizontal_fov_rad].map(f64::to_bits);
     let gaze = format!("{:x} {:x}", gaze[0], gaze[1]);
     rng(seed, &["picture noise", look.scene.as_str(), &keyed(look.from), &gaze])
 }
 
-/// A picture with noise on every value, per cent of full scale.
+/// Adds noise to every value. `percent` is its standard deviation, per cent of full scale.
 pub(super) fn noisy(image: &Image, percent: f64, dice: &mut impl Rng) -> Result<Image, WrongPixelCount> {
     let levels = 255.0 * percent / 100.0;
     let mut rgb = image.rgb().to_vec();

@@ -8,7 +8,7 @@ fn twice<A: Alter + Copy>(alter: A) -> Twice<A> {
     Altered::new(Altered::new(House, alter), alter)
 }
 
-/// Holds that a world shows the same along a path as the unchanged one.
+/// Asserts that a world shows the same views along a path as the unchanged one.
 fn assert_same(world: &impl Platform) {
     let (scene, path) = walk();
     for frame in path.frames.iter().step_by(2) {
@@ -58,7 +58,7 @@ fn in_a_mirrored_view_everything_lies_on_the_other_side() {
 }
 
 #[test]
-fn a_turned_world_shows_the_same_pictures_to_who_turns_with_it() {
+fn a_turned_world_shows_the_same_pictures_to_an_eye_that_turns_too() {
     let (scene, path) = walk();
     let turned = QuarterTurn.path_after(path.clone());
     let world = Altered::new(House, QuarterTurn);

@@ -1,8 +1,8 @@
-//! From the pixels of a level picture to those of a tilted one, and back.
+//! Maps pixels and labels of a level picture to a tilted one, and back.
 
 use wayword_core::{DMat3, DVec3, Heading, Image, Label};
 
-/// What a pixel is that the level picture does not reach.
+/// Level of red, green and blue for pixels that the level picture does not cover.
 pub(super) const GREY: u8 = 128;
 
 /// Two pinhole cameras at one place, with pictures of one size. Pixel coordinates are continuous, with (0, 0) at the
@@ -18,20 +18,19 @@ pub(super) struct Warp {
 }
 
 impl Warp {
-    /// Where a pixel position of the tilted picture lies in the level one; `None` outside it.
+    /// Maps a pixel position of the tilted picture to the level one; `None` outside it.
     pub(super) fn level_px(&self, tilted_px: [f64; 2]) -> Option<[f64; 2]> {
         let [x, y] = self.px(self.level_from_tilted * self.ray(tilted_px, self.tilted_tan), self.level_tan)?;
         let [width, height] = self.size;
         ((0.0..=width).contains(&x) && (0.0..=height).contains(&y)).then_some([x, y])
     }
 
-    /// Where a pixel position of the level picture lies in the tilted one, which may be outside it; `None` behind the
-    /// camera.
+    /// Maps a pixel position of the level picture to the tilted one. The result may lie outside the picture; `None` behind the camera.
     pub(super) fn tilted_px(&self, level_px: [f64; 2]) -> Option<[f64; 2]> {
         self.px(self.tilted_from_level() * self.ray(level_px, self.level_tan), self.tilted_tan)
     }
 
-    /// A label of the level view, which looks along `ahead`, in the tilted one; `None` where it is not in it.
+    /// Maps a label of the level view, which looks along `ahead`, to the tilted one; `None` if it is not in it.
     pub(super) fn label(&self, label: Label, ahead: Heading, has_picture: bool) -> Option<Label> {
         let (sin, cos) = libm::sincos(ahead.turn_to(label.heading));
         let (up, along) = libm::sincos(label.elevation_rad);
@@ -46,7 +45,7 @@ impl Warp {
         }
     }
 
-    /// The box around a box of the level picture, cut off at the edge of the tilted one; `None` where nothing is left.
+    /// The box in the tilted picture around a box of the level one, clipped at the edge; `None` if it lies completely outside.
     pub(super) fn tilted_box(&self, [x, y, width, height]: [f64; 4]) -> Option<[f64; 4]> {
         let corners = [[x, y], [x + width, y], [x, y + height], [x + width, y + height]];
         let mut low = self.size;
@@ -74,7 +73,7 @@ impl Warp {
         DVec3::new((x - width / 2.0) * scale, (height / 2.0 - y) * scale, -1.0)
     }
 
-    /// Where a ray in the frame of a camera with this tangent meets its picture; `None` behind it.
+    /// The pixel position at which a ray meets the picture of a camera with this tangent; `None` behind the camera.
     fn px(&self, ray: DVec3, tan: f64) -> Option<[f64; 2]> {
         let [width, height] = self.size;
         let scale = width / (2.0 * tan * -ray.z);
@@ -82,7 +81,7 @@ impl Warp {
     }
 }
 
-/// The colour at a pixel position, between the four pixels around it.
+/// The colour at a pixel position, interpolated between the four pixels around it.
 pub(super) fn bilinear(image: &Image, [x, y]: [f64; 2]) -> [u8; 3] {
     let [width, height] = [image.width_px(), image.height_px()].map(|side| side as usize);
     let (left, right, to_right) = between(x, width);
@@ -94,7 +93,7 @@ pub(super) fn bilinear(image: &Image, [x, y]: [f64; 2]) -> [u8; 3] {
     })
 }
 
-/// The two pixels around a position, of so many, and the share of the second.
+/// The two neighbouring pixels of a position along a line of `count` pixels, and the weight of the second one.
 fn between(place: f64, count: usize) -> (usize, usize, f64) {
     let place = (place - 0.5).clamp(0.0, count.saturating_sub(1) as f64);
     let first = place as usize;

@@ -75,10 +75,10 @@ fn a_camera_that_looks_up_loses_the_floor_and_one_that_is_rolled_turns_its_pictu
     let (level, up) = (warp(0.0, 0.0), warp(20.0, 0.0));
     assert!(seen(&level, at(0.0, -30.0)) && !seen(&up, at(0.0, -30.0)));
     assert!(!seen(&level, at(0.0, 50.0)) && seen(&up, at(0.0, 50.0)));
-    // What is 20 degrees up is in the middle of a camera that looks there.
+    // A thing 20 degrees up is in the middle of a camera that looks there.
     let [x, y] = up.tilted_px([320.0, 240.0 - 320.0 / 3.0 * libm::tan(20f64.to_radians())]).unwrap();
     assert!((x - 320.0).abs() < 1e-9 && (y - 240.0).abs() < 1e-9);
-    // Clockwise: what was to the right comes up.
+    // Rolled clockwise, things on the right move up.
     let [x, y] = warp(0.0, 45.0).tilted_px([420.0, 240.0]).unwrap();
     assert!(x > 320.0 && y < 240.0, "{x} {y}");
     let [back_x, back_y] = warp(12.0, -9.0).level_px(warp(12.0, -9.0).tilted_px([400.0, 200.0]).unwrap()).unwrap();
@@ -109,7 +109,7 @@ fn boxes_go_with_their_pixels() {
 }
 
 #[test]
-fn a_tilted_view_says_where_it_looks_and_has_no_depth() {
+fn a_tilted_view_contains_its_elevation_and_has_no_depth() {
     let (scene, path) = walk();
     let gaze = Gaze::quarter(path.frames[0].pose.heading);
     let view = tilted(-10.0, 0.0).look(&scene, &path.frames[0], gaze).unwrap();
