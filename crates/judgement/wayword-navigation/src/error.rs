@@ -1,4 +1,4 @@
-//! Why an agent could not walk.
+//! The error of a walk: why an agent could not begin it or go on.
 
 use wayword_core::{ModelError, PlatformError, SceneId, ViewpointId};
 

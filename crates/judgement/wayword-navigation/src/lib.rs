@@ -1,11 +1,11 @@
 //! Can an agent find the way by an instruction? Zero-shot agents walk the viewpoint graph by instructions, and sets of
 //! instructions are compared by how well the agents do.
 //!
-//! Architecture invariant: an agent gets an instruction and, at each node, what `sight` makes for it. An agent that
-//! walks by phrases gets how well they fit four views ([`Sight`]). One that reads gets the ways out of the node, its
-//! room, and by which way each thing lies (`Sighting`). The one by a language model gets the same in words, or pictures.
+//! Architecture invariant: an agent gets an instruction and, at each node, only the input that `sight` makes for it. An agent
+//! that walks by phrases gets how well they fit four views ([`Sight`]). An agent that reads gets the ways out of the node, its
+//! room, and through which way each thing lies (`Sighting`). The agent with a language model gets the same in words, or pictures.
 //! None of them gets a pose, a goal or a map of the scene. Agents that know more are in `agents::baselines` and
-//! `agents::map_reader`. Nothing here opens a file, and nothing knows a platform beyond the trait.
+//! `agents::map_reader`. This crate opens no files, and uses platforms only through the trait.
 
 pub mod agents;
 pub mod comparison;

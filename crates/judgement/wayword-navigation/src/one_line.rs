@@ -1,4 +1,5 @@
-//! Untrusted text, made safe to stand in a prompt.
+//! Makes untrusted text safe for a prompt: one line, no angle brackets, bounded length. Otherwise an instruction could close the
+//! marks around it and pose as a part of the prompt.
 
 /// A text as one line without angle brackets, so that it cannot end its marks in a prompt.
 pub(crate) fn one_line(text: &str) -> String {
@@ -8,7 +9,7 @@ pub(crate) fn one_line(text: &str) -> String {
         .join(" ")
 }
 
-/// The same, cut behind a number of characters.
+/// As [`one_line`], cut after a number of characters.
 pub(crate) fn quoted(text: &str, most_chars: usize) -> String {
     let line = one_line(text);
     match line.char_indices().nth(most_chars) {

@@ -1,5 +1,5 @@
-//! What an agent gets at a node: how well its phrases fit four views, and which neighbours lie in each. What an agent
-//! that reads gets is in `sighting`.
+//! Makes the input of agents at a node: for an agent that walks by phrases, how well they fit four views and which neighbours lie
+//! in each view; for an agent that reads, see `sighting`. Agents learn about a scene only through this file.
 
 mod sighting;
 
@@ -14,10 +14,10 @@ use wayword_core::{
     DVec3, Frame, Gaze, Grounder, Heading, ObjectId, Platform, Pose, SceneId, View, ViewpointGraph, ViewpointId,
 };
 
-/// What an agent looks at one scene with: a platform, and a grounder that scores how well phrases fit what is seen.
+/// An agent's access to one scene: a platform that gives views, and a grounder that scores how well phrases fit them.
 ///
-/// The four views are those of the compass, so that a node looks the same wherever the agent comes from. Views and
-/// scores are kept, so that all agents that walk by one instruction share them.
+/// The four views look north, east, south and west, so that a node looks the same wherever the agent comes from. Views and
+/// scores are cached, so that all agents that walk by one instruction share them.
 pub struct AgentView<'a> {
     platform: &'a dyn Platform,
     grounder: &'a dyn Grounder,
@@ -31,21 +31,21 @@ pub struct AgentView<'a> {
 /// How well phrases fit each of the four views of a node.
 type Scores = Arc<[Vec<f32>; 4]>;
 
-/// What surrounds a node.
+/// The four views around a node.
 struct Around {
     views: [View; 4],
     /// Neighbours in each view, nearest first.
     onward: [Vec<ViewpointId>; 4],
 }
 
-/// What an agent gets at a node.
+/// The input at a node for an agent that walks by phrases.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sight {
     /// North, east, south, west.
     pub views: [Seen; 4],
 }
 
-/// One view, as an agent gets it.
+/// One view at a node, as an agent gets it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
     /// How well each phrase fits, in the order in which they were given.
@@ -55,10 +55,10 @@ pub struct Seen {
 }
 
 impl<'a> AgentView<'a> {
-    /// Looks at a scene. Where the grounder needs no pictures, the platform draws none.
+    /// Opens a scene for agents. If the grounder needs no pictures, the platform draws none.
     ///
     /// # Errors
-    /// When there is no such scene.
+    /// When the platform cannot give the scene's graph.
     pub fn new(
         platform: &'a dyn Platform,
         grounder: &'a dyn Grounder,
@@ -76,7 +76,7 @@ impl<'a> AgentView<'a> {
         })
     }
 
-    /// What is seen from a node.
+    /// The four views of a node, with the scores of the phrases.
     ///
     /// # Errors
     /// When the platform gives no view, or the grounder fails.
@@ -96,7 +96,7 @@ impl<'a> AgentView<'a> {
         Ok(self.grounder.point(&around.views.each_ref(), phrase)?)
     }
 
-    /// The four views of a node, from north clockwise. They are not kept here: the pictures of many walks would fill the
+    /// The four views of a node, from north clockwise. They are not cached, because the pictures of many walks would fill the
     /// memory.
     ///
     /// # Errors
@@ -110,7 +110,7 @@ impl<'a> AgentView<'a> {
         self.graph.position(viewpoint).unwrap_or_default()
     }
 
-    /// The direction from one node to another; none where one stands above the other.
+    /// The direction from one node to another; `None` if one is straight above the other.
     pub(crate) fn heading_to(&self, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
         heading_to(&self.graph, from, to)
     }
@@ -159,13 +159,13 @@ pub(crate) fn frame_at(graph: &ViewpointGraph, scene: &SceneId, viewpoint: &View
     Ok(Frame { pose, viewpoint: Some(viewpoint.clone()), level: graph.level(viewpoint) })
 }
 
-/// The direction from one node to another; none where one stands above the other.
+/// The direction from one node to another; `None` if one is straight above the other.
 pub(crate) fn heading_to(graph: &ViewpointGraph, from: &ViewpointId, to: &ViewpointId) -> Option<Heading> {
     Heading::towards(graph.position(from)?, graph.position(to)?)
 }
 
-/// The neighbours that lie in a view, nearest first. One straight above or below counts as north, because it has to be
-/// in one of the views.
+/// The neighbours that lie in a view, nearest first. A neighbour straight above or below counts as north, because every
+/// neighbour must be in one of the views.
 fn onward(graph: &ViewpointGraph, from: &ViewpointId, gaze: Gaze) -> Vec<ViewpointId> {
     let position = |id: &ViewpointId| graph.position(id).unwrap_or_default();
     let here = position(from);

@@ -13,8 +13,8 @@ use wayword_core::{
     SceneId, View, ViewpointGraph, ViewpointId,
 };
 
-/// Arms of two nodes to the north, east, south and west of `middle`: `n1`, `n2`, `e1` and so on. At the end of an arm stands its
-/// thing, which is seen from there alone; it lies farther out.
+/// Arms of two nodes to the north, east, south and west of `middle`: `n1`, `n2`, `e1` and so on. Beyond the end of each arm is a
+/// thing that is visible only from the arm's last node.
 pub(crate) struct Cross {
     graph: Arc<ViewpointGraph>,
     things: BTreeMap<&'static str, &'static str>,
@@ -76,7 +76,7 @@ impl Cross {
         self
     }
 
-    /// The nodes from which somebody looked.
+    /// The nodes from which an agent looked.
     pub(crate) fn looked_from(&self) -> BTreeSet<ViewpointId> {
         self.looked_from.lock().unwrap().clone()
     }

@@ -1,4 +1,5 @@
-//! What an agent did, step by step.
+//! The record of one walk: every step of an agent, why the walk ended, and what it cost. It is a line of the file of walks, so the
+//! field names are part of a file format.
 
 use crate::directions::Directions;
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ pub struct Walk {
     pub text: String,
     /// The scene.
     pub scene: SceneId,
-    /// The instruction as it was split for the agent; `None` for one that does not read.
+    /// The instruction as it was split for the agent; `None` for an agent that does not read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub directions: Option<Directions>,
     /// Every node at which it stood, in order; at least the start.
@@ -29,42 +30,43 @@ pub struct Walk {
     /// The object that it takes for the target, where its grounder can name one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<ObjectId>,
-    /// What it took, for an agent by a language model.
+    /// Calls, tokens and cost, for an agent with a language model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effort: Option<Effort>,
 }
 
-/// A stop at a node, and what was decided there.
+/// A stop at a node, and the agent's decision there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// The node.
     pub viewpoint: ViewpointId,
     /// The direction of the hop that led here; at the start the episode's.
     pub heading_rad: Heading,
-    /// What was seen and scored. Empty on the way back over nodes, and for agents that look at nothing.
+    /// The scores of the four views. Empty on the way back over nodes, and for agents that do not look.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub views: Vec<Scored>,
     /// The current key phrase when it looked, from 0; beyond the last where only the activity is left.
     #[serde(default)]
     pub phrase: usize,
-    /// What an agent that reads was told there; `None` for the others.
+    /// A summary of the surroundings, for an agent that reads; `None` for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub told: Option<Told>,
-    /// What it did then.
+    /// Its decision.
     pub choice: Choice,
-    /// Why, in the words of the model that decided; `None` where no model did, or it gave no reason.
+    /// The reason, in the words of the model that decided; `None` if no model decided, or it gave no reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
 
 impl Step {
-    /// A stop at a node of an agent that neither looked nor was told anything, and gave no reason.
+    /// A stop without views, surroundings or a reason.
     pub(crate) fn new(viewpoint: ViewpointId, heading_rad: Heading, choice: Choice) -> Self {
         Self { viewpoint, heading_rad, views: Vec::new(), phrase: 0, told: None, choice, reason: None }
     }
 }
 
-/// What a walk of an agent by a language model took. Calls of a model that only describes pictures are not counted.
+/// Calls, tokens and cost of one walk of an agent with a language model. Calls of a model that only describes pictures are not
+/// counted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effort {
     /// Calls of the model.
@@ -80,12 +82,12 @@ pub struct Effort {
     /// US dollars of the replies; `None` where a price is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub usd: Option<f64>,
-    /// Seconds that the model took, when the calls were made.
+    /// Seconds that the model took, as measured when the calls were made. Replies from the ledger keep their first time.
     pub seconds: f64,
-    /// Replies of no use.
+    /// Counts of useless replies.
     #[serde(default)]
     pub useless: Useless,
-    /// What was wrong with the last of them, and how it began.
+    /// The problem of the last useless reply, and how that reply began.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_useless: Option<String>,
     /// Views that could not be described.
@@ -93,29 +95,29 @@ pub struct Effort {
     pub undescribed: usize,
 }
 
-/// Replies of no use, by what was wrong with them.
+/// Counts of useless replies, by problem.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Useless {
-    /// They call no tool.
+    /// The reply calls no tool.
     pub no_call: usize,
-    /// They name a way that there is not.
+    /// The reply names a way that does not exist.
     pub no_way: usize,
-    /// They only look around once more, where the agent stands and has looked around.
+    /// The reply only looks around again, at a place where the agent has already looked around.
     pub idle: usize,
-    /// The service gave none: it refused, filtered or failed.
+    /// The service gave no reply: it refused, filtered or failed.
     pub failed: usize,
 }
 
 impl Useless {
-    /// All of them.
+    /// The number of all useless replies.
     #[must_use]
     pub fn sum(&self) -> usize {
         self.no_call + self.no_way + self.idle + self.failed
     }
 }
 
-/// One of the four views of a step: north, east, south, west. In files it is a list of its three values, because there
-/// are many of them.
+/// The scores of one of the four views of a step (north, east, south, west). In files it is written as a list of its three
+/// values, because files contain many of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "(f32, f32, usize)", into = "(f32, f32, usize)")]
 pub struct Scored {
@@ -127,10 +129,10 @@ pub struct Scored {
     pub ways: usize,
 }
 
-/// What an agent that reads was told at a step, in short.
+/// A summary of what an agent that reads learned at a step.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Told {
-    /// The room, where it was told one.
+    /// The room, if it was given to the agent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub room: Option<String>,
     /// Number of ways out.
@@ -139,13 +141,13 @@ pub struct Told {
     pub things: usize,
 }
 
-/// What an agent did at a step.
+/// The agent's decision at a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Choice {
     /// Went on through one of the four views, from 0.
     Onward(usize),
-    /// Went on without having looked (baselines, upper bounds, and agents that know the map).
+    /// Went on without looking (baselines, upper bounds, and agents that know the map).
     Unseeing,
     /// Went back to a node where it had been: the sequence of scores was too low, or the text fits another way better.
     Back,
@@ -165,11 +167,11 @@ pub enum End {
     DeadEnd,
     /// It had made the most calls of its model that it may.
     Calls,
-    /// Its model had cost what a walk may cost.
+    /// The cost of its model had reached the limit of a walk.
     Money,
-    /// It took one hop over and over.
+    /// It repeated one hop too often.
     Circles,
-    /// Several replies of its model in a row were of no use.
+    /// Several replies of its model in a row were useless.
     NoUse,
 }
 

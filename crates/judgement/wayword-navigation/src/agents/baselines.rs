@@ -1,5 +1,5 @@
-//! Lower-bound baselines, which read nothing, and agents that know more than an agent may: the map, or the goal. A
-//! figure of an agent means little without both.
+//! Lower bounds, which do not read the instruction (random, straight on), and upper bounds, which know the map or the goal. The
+//! figures of an agent are meaningful only between these.
 
 use super::{Start, Walked};
 use crate::{
@@ -29,7 +29,7 @@ pub fn straight(graph: &ViewpointGraph, start: &Start, hops: usize) -> Walked {
     })
 }
 
-/// The shortest path to the annotated goal; the start alone where there is no way.
+/// The shortest path to the annotated goal; only the start if there is no way.
 ///
 /// # Errors
 /// When the start or the goal is not in the graph.
@@ -37,8 +37,8 @@ pub fn oracle(graph: &ViewpointGraph, start: &Start, goal: &ViewpointId) -> Resu
     to(graph, start, goal)
 }
 
-/// The shortest path to the nearest node of a room, by the platform's labels; the start alone where there is none. It knows the map
-/// and every room, and reads nothing but the room's name.
+/// The shortest path to the nearest node of a room, by the platform's labels; only the start if there is none. This agent knows the
+/// map and every room, and uses only the room's name from the instruction.
 ///
 /// # Errors
 /// When the platform gives no view.

@@ -1,5 +1,5 @@
-//! The agent that reads and knows the map: every viewpoint of the scene, every room and every label. It shows what an
-//! instruction says to somebody who knows the building.
+//! The agent that reads and knows the map: every viewpoint of the scene, every room and every label. Its figures show how much of
+//! the way an instruction determines for a reader who knows the building.
 
 use super::{Start, Walked, baselines::follow};
 use crate::{directions::beginning_of, error::WalkError};
@@ -15,7 +15,7 @@ pub struct Surveyed {
 }
 
 impl Surveyed {
-    /// Knows what a survey found.
+    /// Takes over the viewpoints and labels of a survey.
     #[must_use]
     pub fn of(survey: &Survey) -> Self {
         let viewpoints = survey.viewpoints().iter().map(|viewpoint| viewpoint.id.clone()).collect();
@@ -23,7 +23,7 @@ impl Surveyed {
     }
 }
 
-/// A reader at a start, with all walks that it thinks of.
+/// A reader at a start, with the tree of all walks from there that it considers.
 #[derive(Debug)]
 pub struct MapReader<'a> {
     graph: &'a ViewpointGraph,
@@ -49,8 +49,8 @@ impl<'a> MapReader<'a> {
         Ok(Self { graph, known, start, tree })
     }
 
-    /// The walk that an instruction fits best; the start alone where there is none. Of walks that it fits equally well, the
-    /// one of middle length, because an end of the list would make the floor of an empty text too low.
+    /// The walk that an instruction fits best; only the start if no walk fits. Of walks with equal fit, the one of middle length is
+    /// taken. With the shortest or the longest, the figures by an empty text, which all walks fit equally, would be too low.
     #[must_use]
     pub fn walk(&self, text: &str) -> Walked {
         let guide = Guide::read(beginning_of(text));

@@ -1,4 +1,4 @@
-//! Agents that walk by instructions, and the agents that they are compared with.
+//! Agents that walk by instructions, and the baselines and upper bounds that they are compared with.
 
 mod baselines;
 mod map_reader;
@@ -40,13 +40,14 @@ pub struct Walked {
     pub steps: Vec<Step>,
     /// Why it ended.
     pub end: crate::walk::End,
-    /// The object that is taken for the target.
+    /// The object that the agent takes for the target.
     pub object: Option<wayword_core::ObjectId>,
-    /// What it took, where a language model decided.
+    /// Calls, tokens and cost, if a language model decided.
     pub effort: Option<crate::walk::Effort>,
 }
 
-/// How a hop is told: back, where it leads to a node where the agent has been, else by the view in which it lies.
+/// How a hop is recorded: as a step back if it leads to a node that the agent has visited, and otherwise by the view in which it
+/// lies.
 fn choice(agent_view: &AgentView<'_>, steps: &[Step], here: &ViewpointId, to: &ViewpointId) -> Choice {
     if steps.iter().any(|step| step.viewpoint == *to) {
         return Choice::Back;

@@ -1,4 +1,4 @@
-//! The parameters that the papers leave open.
+//! The parameters of the agents that walk by phrases. The papers do not publish them; the defaults come from our sweeps.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
-    /// A key phrase that scores at least this in the best view is done; the next one is current from the next step on.
+    /// A key phrase is done when its score in the best view is at least this; the next one is current from the next step on.
     pub phrase_threshold: f32,
-    /// An activity that scores at least this in any view ends the walk.
+    /// The walk ends when the activity has at least this score in any view.
     pub stop_threshold: f32,
     /// The activity only counts when at most this many key phrases are left.
     pub stop_with_phrases_left: usize,
@@ -29,7 +29,7 @@ pub struct Parameters {
 pub struct Back {
     /// The sequence score is the mean, over this many looks, of how well the current phrase fits the best view.
     pub window: usize,
-    /// The agent goes back where the sequence score is below this.
+    /// The agent goes back when the sequence score is below this.
     pub threshold: f32,
     /// How many nodes it goes back.
     pub nodes: usize,
@@ -47,7 +47,7 @@ impl Parameters {
             // Cosines of a sentence encoder between a phrase and a name.
             ("labels", false) => (0.8, 0.4, ALWAYS, Back { window: 8, threshold: 0.2, nodes: 1 }),
             ("labels", true) => (0.6, 0.6, ALWAYS, Back { window: 8, threshold: 0.05, nodes: 2 }),
-            // Shares of places found.
+            // Shares of the named places that the labels have.
             ("labels/lexical", false) => (0.6, 0.4, 1, Back { window: 12, threshold: 0.05, nodes: 1 }),
             ("labels/lexical", true) => (0.6, 0.3, ALWAYS, Back { window: 12, threshold: 0.05, nodes: 4 }),
             // Scores of a detector's boxes. Not swept: there were no weights. At half of the full score, detectors' makers show a

@@ -1,4 +1,5 @@
-//! CLIP-Nav, Seq-CLIP-Nav and GLIP-Nav: one walk, with different parameters and grounders.
+//! The agents CLIP-Nav, Seq-CLIP-Nav and GLIP-Nav. They are the same walk with different parameters and grounders: go where the
+//! current key phrase fits best, and stop where the activity fits. `policy.rs` decides; this file walks and records.
 
 use super::{
     Parameters, Start, Walked,
@@ -12,7 +13,7 @@ use crate::{
 };
 use wayword_core::{Heading, ViewpointId};
 
-/// Walks by an instruction that was split.
+/// Walks by a split instruction.
 ///
 /// # Errors
 /// When the platform gives no view, or the grounder fails.
@@ -119,14 +120,14 @@ mod tests {
     }
 
     #[test]
-    fn it_stops_where_its_task_is_and_points_at_the_thing() {
+    fn phrase_walk_stops_at_its_task_and_points_at_the_thing() {
         let walked = walked(&[("n2", "sink")], &directions(&[], "wipe the sink"), &parameters(None));
         assert_eq!(stood(&walked), ["middle", "n1", "n2"]);
         assert_eq!(walked.end, End::Stopped);
         assert_eq!(walked.object.unwrap().as_str(), "sink");
     }
 
-    /// The phrase of what it passes is current first, and the task counts only after that.
+    /// The first phrase names a thing on the way. The task counts only after that phrase is done.
     #[test]
     fn key_phrases_come_one_after_the_other() {
         let listens = Parameters { stop_with_phrases_left: 0, ..parameters(None) };
@@ -139,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn hops_back_are_hops_over_edges_and_count() {
+    fn hops_back_follow_edges_and_count_as_hops() {
         let back = Some(Back { window: 2, threshold: 0.9, nodes: 2 });
         let limited = Parameters { max_hops: 7, ..parameters(back) };
         let walked = walked(&[], &directions(&["the bed"], "wipe the sink"), &limited);

@@ -2,18 +2,18 @@
 //!
 //! CLIP-Nav (arXiv 2211.16649, section 3): the current key phrase is scored on four views, and the agent goes to the
 //! nearest neighbour in the best one. After a phrase that fits well enough comes the next phrase. An activity that fits
-//! well enough ends the walk. Seq-CLIP-Nav goes back where the mean of the last scores is too low.
+//! well enough ends the walk. Seq-CLIP-Nav goes back when the mean of the last scores is too low.
 //!
-//! The papers leave these open, and they are decided here. A phrase that fits still chooses the view, and the next
-//! phrase is current only after that. Going back keeps the phrases that were done. Of views that tie in score and
-//! angle, the later one by the compass is taken.
+//! The papers leave some cases open. Here, a phrase that fits still chooses the view, and the next phrase is current only after
+//! that. Going back does not undo phrases that are done. Of views that tie in score and angle, the later one by the compass is
+//! taken.
 
 use super::Parameters;
 use crate::sight::{Seen, Sight};
 use std::collections::BTreeMap;
 use wayword_core::{Compass, Heading, ViewpointId};
 
-/// An agent's memory of one walk.
+/// The state of one walk of an agent by phrases, and its decisions.
 pub(crate) struct Policy<'p> {
     parameters: &'p Parameters,
     /// Number of key phrases; the activity comes after them.
@@ -21,12 +21,12 @@ pub(crate) struct Policy<'p> {
     /// The current key phrase.
     phrase: usize,
     visits: BTreeMap<ViewpointId, usize>,
-    /// The nodes on the way here, without those that it went back over.
+    /// The nodes on the way here, without those that the agent left again by going back.
     trail: Vec<ViewpointId>,
     recent: Vec<f32>,
 }
 
-/// What the agent does at a node.
+/// The agent's decision at a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Decision {
     /// Go to a neighbour that lies in a view.
@@ -66,7 +66,7 @@ impl<'p> Policy<'p> {
         self.back(fit).unwrap_or_else(|| self.onward(heading, sight, in_hand))
     }
 
-    /// The nodes to go back over, where the last looks say that the way is wrong.
+    /// Decides to go back if the scores of the last looks are too low, and returns the nodes to go back over.
     fn back(&mut self, fit: f32) -> Option<Decision> {
         let back = self.parameters.back?;
         self.recent.push(fit);
@@ -83,7 +83,8 @@ impl<'p> Policy<'p> {
         Some(Decision::Back(over))
     }
 
-    /// The best view's nearest neighbour. Of views that fit equally well, the one that lies nearest to straight ahead.
+    /// Decides to go on, to the nearest neighbour in the best view. Of views with equal scores, the one nearest to straight ahead
+    /// is taken.
     fn onward(&self, heading: Heading, sight: &Sight, in_hand: usize) -> Decision {
         let visits = |id: &ViewpointId| self.visits.get(id).copied().unwrap_or_default();
         let neighbours = || sight.views.iter().flat_map(|view| &view.onward);

@@ -1,4 +1,5 @@
-//! The agent that reads: it takes every clause of an instruction, and believes in the walks that fit them.
+//! The agent that reads. It interprets every clause of an instruction and, at each node, goes on with the walks that fit the
+//! clauses best (`wayword_follower::online`). It sees only the surroundings of the node where it is.
 
 use super::{Start, Walked, choice};
 use crate::{
@@ -12,10 +13,10 @@ use wayword_follower::{
     online::{Decision, OnwardWeights, Reader, Sighting},
 };
 
-/// Most hops of a walk. The reader ends its walks long before.
+/// Most hops of a walk. The reader normally stops long before.
 const MOST_HOPS: usize = 100;
 
-/// Walks by an instruction, reading all of it. At each node the agent gets a [`Sighting`] and nothing else.
+/// Walks by an instruction, reading all of it. At each node the agent gets only a [`Sighting`].
 ///
 /// # Errors
 /// When the platform gives no view, labels are asked for and there are none, or the grounder fails.
@@ -30,7 +31,7 @@ pub fn walk_by_reading(
     walk(agent_view, start, things, |seen| reader.decide(seen))
 }
 
-/// Walks as `decide` decides.
+/// Walks as `decide` decides, and records the steps.
 fn walk(
     agent_view: &AgentView<'_>,
     start: &Start,

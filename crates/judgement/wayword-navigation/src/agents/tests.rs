@@ -81,7 +81,7 @@ fn the_activity_ends_the_walk_when_few_phrases_are_left() {
 }
 
 #[test]
-fn neighbours_that_were_stood_at_are_shunned_while_there_are_others() {
+fn visited_neighbours_are_shunned_while_there_are_others() {
     let shy = Parameters { shun_visited: true, ..parameters() };
     let mut policy = Policy::new(&shy, 1);
     let from_0 = sight([(&[0.4, 0.0], &[1]), (&[0.0, 0.0], &[]), (&[0.0, 0.0], &[2]), (&[0.0, 0.0], &[])]);
@@ -128,7 +128,7 @@ fn stood(walked: &Walked) -> Vec<&str> {
 }
 
 #[test]
-fn straight_goes_on_until_nothing_lies_ahead() {
+fn straight_goes_on_until_no_neighbour_lies_ahead() {
     assert_eq!(stood(&straight(&line(), &start(0.2), 10)), ["v1", "v2", "v3", "v4"]);
     assert_eq!(stood(&straight(&line(), &start(0.2), 2)), ["v1", "v2", "v3"]);
     assert_eq!(stood(&straight(&line(), &start(std::f64::consts::PI), 10)), ["v1", "v0"]);
@@ -157,7 +157,7 @@ proptest! {
         prop_assert_eq!(walked, again);
     }
 
-    /// Whatever is scored, an agent goes to a neighbour, back over where it stood, or stays.
+    /// For any scores, an agent goes to a neighbour, goes back over visited nodes, or stays.
     #[test]
     fn an_agent_never_leaves_the_graph(
         scores in prop::collection::vec(0.0f32..1.0, 12),

@@ -1,4 +1,5 @@
-//! What the walks of an agent by a language model took: calls, tokens, money, hops, time, and replies of no use.
+//! Summarises the efforts of the walks in a row of the table: calls, tokens, money, hops, time and useless replies of an agent with
+//! a language model.
 
 use super::Results;
 use crate::walk::{Effort, End, Useless, Walk};
@@ -6,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_metrics::Estimate;
 
-/// What the walks of a row took. Means are over items, with intervals clustered by path; counts are over walks.
+/// The efforts of the walks of a row. Means are over items, with intervals clustered by path; counts are over walks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Efforts {
     /// Number of walks.
@@ -26,18 +27,18 @@ pub struct Efforts {
     pub seconds: Estimate,
     /// Tokens of the largest prompt of all.
     pub most_tokens_in: u64,
-    /// Replies of no use.
+    /// Counts of useless replies.
     pub useless: Useless,
     /// Views that could not be described.
     #[serde(default)]
     pub undescribed: usize,
-    /// Walks that stopped at their start.
+    /// Walks that the agent ended at the start.
     pub at_once: usize,
-    /// Walks by why they ended.
+    /// Number of walks by the reason of their end.
     pub ended: BTreeMap<End, usize>,
 }
 
-/// What one walk took.
+/// The effort of one walk.
 #[derive(Debug, Clone)]
 pub(super) struct OfWalk {
     effort: Effort,
@@ -46,7 +47,7 @@ pub(super) struct OfWalk {
 }
 
 impl OfWalk {
-    /// What a walk took, where a language model decided.
+    /// The effort of a walk; `None` if no language model decided.
     pub(super) fn of(walk: &Walk) -> Option<Self> {
         let hops = walk.steps.len().saturating_sub(1);
         Some(Self { effort: walk.effort.clone()?, hops, end: walk.end })
@@ -54,7 +55,7 @@ impl OfWalk {
 }
 
 impl Efforts {
-    /// What the walks of an agent by a set took. `estimate` gives the mean of items' figures with its interval.
+    /// Summarises the walks of an agent by a set. `estimate` computes the mean of the items' figures with its interval.
     pub(super) fn of(
         results: &Results,
         (agent, set): (&str, &str),

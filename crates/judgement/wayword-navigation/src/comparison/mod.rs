@@ -1,5 +1,5 @@
-//! Compares sets of instructions by how well agents walk by them: the paper's table, with intervals, bounds and swap
-//! tests.
+//! Compares sets of instructions by how well agents walk by them: the table of the paper (arXiv 2403.11487), with intervals, lower
+//! and upper bounds, and swap tests that show whether an agent uses the text at all.
 
 mod efforts;
 mod results;
@@ -14,21 +14,22 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use wayword_metrics::{Estimate, McNemar, Metric, Rule};
 
-/// Everything that a comparison found.
+/// The result of a comparison: its settings, the table, and the swap tests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// What it is about and how it was made.
+    /// Its subject and its settings.
     pub about: About,
     /// The sets, in the order in which they were asked for.
     pub sets: Vec<Set>,
-    /// One per agent and set, agents in their order; an agent that does not read has one row, whose set is `None`. One that
-    /// reads and knows the map has two more: by an empty text ([`empty_set`]) and by another path's ([`swapped_set`]).
+    /// One row per agent and set, agents in their order. An agent that does not read has one row, with `None` as its set. An agent
+    /// that reads and knows the map has two more: by an empty text ([`empty_set`]) and by the text of another path
+    /// ([`swapped_set`]).
     pub rows: Vec<Row>,
-    /// One per agent that reads all of its text, and swap of the first set.
+    /// The swap tests of the first set: one per swap and agent that is tested.
     pub swaps: Vec<Swapped>,
 }
 
-/// What a comparison is about.
+/// The subject and the settings of a comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// The platform.
@@ -37,15 +38,15 @@ pub struct About {
     pub episodes: String,
     /// The grounder, which scores how well phrases fit views; `labels` is ground truth, not perception.
     pub grounder: String,
-    /// The same for agents that walk by a detector.
+    /// The detector, which scores phrases for agents that walk by one.
     pub detector: String,
-    /// What a score of that detector is, where it is a network.
+    /// The meaning of that detector's scores, if it is a network.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detector_score: Option<String>,
     /// The sentence encoder behind `labels`, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub encoder: Option<String>,
-    /// What splits instructions.
+    /// The splitter of instructions: `rules` or a model.
     pub splitter: String,
     /// The language model of the agent that walks by tools, and how it sees: `labels`, `pictures`, or the model that
     /// describes pictures. `None` without that agent.
@@ -53,13 +54,13 @@ pub struct About {
     pub tools: Option<(String, String)>,
     /// The rule of success in the table.
     pub rule: Rule,
-    /// What intervals cover, as 0.95.
+    /// The share that intervals cover, as 0.95.
     pub level: f64,
     /// Resamples of the intervals.
     pub resamples: usize,
     /// Seed of everything random.
     pub seed: u64,
-    /// Items that every set has and that could be walked, which all rows are about.
+    /// Items that every set has and that could be walked. All rows are about these.
     pub items: usize,
     /// Paths on which those items lie: items on one path are not independent.
     pub paths: usize,
@@ -67,7 +68,7 @@ pub struct About {
     pub failed: usize,
     /// Whether the parameters are the defaults and were swept for this grounder.
     pub swept: bool,
-    /// Which walks an agent that reads and knows the map thinks of; `None` without one.
+    /// Which walks an agent that reads and knows the map considers; `None` without such an agent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub prior: Option<String>,
     /// The agents' parameters, by agent and name.
@@ -91,24 +92,24 @@ pub struct Set {
     pub words: f64,
 }
 
-/// What kind of agent a row is of.
+/// How much an agent knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum AgentKind {
-    /// It knows nothing and reads nothing.
+    /// It neither reads nor knows the scene.
     #[serde(alias = "floor")] // The name in comparisons that were made before.
     LowerBound,
     /// It reads.
     Agent,
-    /// It knows what no agent gets: the map, the labels of rooms, for some those of objects.
+    /// It knows more than an agent may: the map, the labels of rooms, and in some cases those of objects.
     Informed,
     /// It knows the goal.
     #[serde(alias = "ceiling")]
     UpperBound,
 }
 
-/// An agent's figures on one set. A text's figure is its walk's, an item's the mean over its texts, the row's the mean over
-/// items.
+/// An agent's figures on one set. The figure of an item is the mean over the walks by its texts, and the figure of the row is the
+/// mean over items.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The agent.
@@ -119,14 +120,14 @@ pub struct Row {
     pub set: Option<String>,
     /// Each figure with its interval, clustered by path.
     pub figures: BTreeMap<Metric, Estimate>,
-    /// This row less the first set's of the same agent; `None` for the first set and for those that do not read.
+    /// This row minus the row of the first set for the same agent; `None` for the first set and for agents that do not read.
     pub against_first: Option<Difference>,
-    /// What its walks took, where a language model decided.
+    /// Calls, tokens and cost of its walks, if a language model decided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effort: Option<Efforts>,
 }
 
-/// One row less another of the same agent, item by item.
+/// One row minus another of the same agent, item by item.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Each figure's difference with its interval, clustered by path.
@@ -136,39 +137,39 @@ pub struct Difference {
     pub mcnemar: McNemar,
 }
 
-/// What a swap of the first set does to an agent.
+/// The effect of a swap of the first set on an agent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Swapped {
     /// The agent.
     pub agent: String,
     /// The swap.
     pub swap: Swap,
-    /// Texts that the swap changed; where it changes nothing a text is left out, on both sides.
+    /// Texts that the swap changed. Texts that it leaves as they are do not count on either side.
     pub changed: usize,
     /// Texts of the first set on the common items.
     pub texts: usize,
     /// The agent's figures by the swapped texts.
     pub figures: BTreeMap<Metric, Estimate>,
-    /// The figures by the original texts less those by the swapped ones, on the same items and texts: positive where
-    /// the agent listens to what was swapped.
+    /// The figures by the original texts minus those by the swapped ones, on the same items and texts: positive if the agent uses
+    /// the swapped information.
     pub lost: Difference,
-    /// What that shows.
+    /// The conclusion from `lost`.
     pub listening: Listening,
 }
 
-/// Whether an agent listens to what was swapped.
+/// Whether a swap test shows that an agent uses the swapped information.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Listening {
     /// The whole interval of the lost success rate is above 0.
     Shown,
-    /// It is not. That does not show that the agent does not listen.
+    /// The interval includes 0 or less. This does not prove that the agent ignores the swapped information.
     NotShown,
-    /// The swap changed texts on fewer than [`FEWEST_PATHS`] paths, too few for an interval that means anything.
+    /// The swap changed texts on fewer than [`FEWEST_PATHS`] paths, too few for a reliable interval.
     TooFew,
 }
 
-/// The fewest paths on which an interval that draws paths means anything.
+/// The fewest paths for which a bootstrap interval over paths is reliable.
 pub const FEWEST_PATHS: usize = 20;
 
 #[cfg(test)]

@@ -1,26 +1,26 @@
-//! Scores of walks, by agent, set, item and text.
+//! Collects the scores and the efforts of walks by agent, set, item and text, for the table to average.
 
 use super::efforts::OfWalk;
 use std::collections::{BTreeMap, BTreeSet};
 use wayword_metrics::{Metric, Rule, Score};
 
-/// The scores of one agent on one set: by item, then by the text's place in its set.
+/// The scores of one agent on one set: by item, then by the text's index in its set.
 type Scores = BTreeMap<String, BTreeMap<usize, Score>>;
 
-/// What the walks of one agent on one set took: by item, then by the text's place in its set.
+/// The efforts of one agent on one set: by item, then by the text's index in its set.
 type OfWalks = BTreeMap<String, BTreeMap<usize, OfWalk>>;
 
 /// All scores of a comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Results {
     scores: BTreeMap<(String, String), Scores>,
-    /// What walks took, where a language model decided: by agent and set.
+    /// The efforts of walks in which a language model decided, by agent and set.
     efforts: BTreeMap<(String, String), OfWalks>,
     /// The path of each item.
     clusters: BTreeMap<String, String>,
 }
 
-/// Places of texts, by item.
+/// Indices of texts in a set, by item.
 pub(super) type Texts = BTreeMap<String, BTreeSet<usize>>;
 
 impl Results {
@@ -47,13 +47,13 @@ impl Results {
         self.clusters.contains_key(item)
     }
 
-    /// The texts by which an agent walked.
+    /// The texts of a set by which an agent walked.
     pub(super) fn texts(&self, agent: &str, set: &str) -> Texts {
         let scores = self.of(agent, set).into_iter().flatten();
         scores.map(|(item, texts)| (item.clone(), texts.keys().copied().collect())).collect()
     }
 
-    /// An agent's figure of each item: the mean over its texts. With `only`, over those texts alone.
+    /// An agent's figure for each item: the mean over the item's texts, or over those in `only`.
     pub(super) fn by_item(
         &self,
         agent: &str,
@@ -73,7 +73,7 @@ impl Results {
         scores.filter_map(|entry| Some((entry.0.as_str(), of_item(entry)?))).collect()
     }
 
-    /// Whether an agent succeeds by the first text of each item. With `only`, the first of those.
+    /// Whether an agent succeeds by the first text of each item, or by the first of those in `only`.
     pub(super) fn first_successes(
         &self,
         agent: &str,
@@ -97,7 +97,7 @@ impl Results {
         self.clusters.get(item).map_or("", String::as_str)
     }
 
-    /// What the walks of an agent by a set took; `None` where no language model decided.
+    /// The efforts of an agent's walks by a set; `None` if no language model decided.
     pub(super) fn efforts(&self, agent: &str, set: &str) -> Option<&OfWalks> {
         self.efforts.get(&(agent.to_owned(), set.to_owned()))
     }

@@ -1,4 +1,5 @@
-//! From scores to the table: means over items, intervals clustered by path, differences item by item.
+//! Computes the table of a comparison from the scores of walks: means over items, intervals clustered by path, differences item by
+//! item, and the swap tests.
 
 use super::{
     About, AgentKind, Comparison, Difference, Efforts, FEWEST_PATHS, Listening, Results, Row, Set, Swapped,
@@ -8,22 +9,22 @@ use crate::swap::Swap;
 use std::collections::BTreeMap;
 use wayword_metrics::{Estimate, McNemar, Metric, clustered_interval};
 
-/// The set of walks by swapped texts of a set.
+/// The name under which walks by the swapped texts of a set are recorded.
 #[must_use]
 pub fn swapped_set(set: &str, swap: Swap) -> String {
     format!("{set}~{}", swap.name())
 }
 
-/// The set of walks by an empty text instead of a set's.
+/// The name under which walks by an empty text, instead of a set's texts, are recorded.
 #[must_use]
 pub fn empty_set(set: &str) -> String {
     format!("{set}~{EMPTY}")
 }
 
-/// What stands for a swap in the name of the set of walks by an empty text.
+/// The part of that name after `~`, where swaps have their name.
 pub const EMPTY: &str = "empty";
 
-/// The set under which walks of agents that do not read are kept.
+/// The set name under which walks of agents that do not read are recorded.
 pub const UNREAD: &str = "none";
 
 /// An agent of a comparison.
@@ -35,19 +36,20 @@ pub struct Walker {
     pub kind: AgentKind,
     /// Whether it reads instructions.
     pub reads: bool,
-    /// Whether what it knows may lead it to the goal without its instruction. Then it has two more rows: by an empty text, and by
-    /// another path's.
+    /// Whether its knowledge may lead it to the goal without its instruction. Then it has two more rows: by an empty text, and by the
+    /// text of another path.
     pub has_floors: bool,
 }
 
 impl Walker {
-    /// Whether it is walked by swapped texts: what it reads is its only way to the goal, or rows beside it show the others.
+    /// Whether swap tests are meaningful for it: either it can find the goal only by reading, or its two extra rows show what it
+    /// reaches without reading.
     fn is_swapped(&self) -> bool {
         self.kind == AgentKind::Agent || self.has_floors
     }
 }
 
-/// Makes the table. Swaps are of the first set.
+/// Computes the table. Swap tests use the first set.
 #[must_use]
 pub fn compare(about: About, sets: Vec<Set>, walkers: &[Walker], swaps: &[Swap], results: &Results) -> Comparison {
     let table = Table { about: &about, results };
@@ -119,7 +121,7 @@ impl Table<'_> {
         self.estimates(|metric| self.results.by_item(agent, set, metric, self.about.rule, only))
     }
 
-    /// The first less the second, on the items that have a figure in both.
+    /// The first set minus the second, on the items that have a figure in both.
     fn difference(
         &self,
         agent: &str,

@@ -108,10 +108,10 @@ fn differences_pair_items_and_mcnemar_their_first_texts() {
 }
 
 #[test]
-fn a_swap_is_held_against_the_very_texts_that_it_changed() {
+fn swap_is_compared_on_the_texts_that_it_changed() {
     let mut results = results();
     let swapped = swapped_set("original", Swap::Landmarks);
-    // Of item a only the text that fails was changed; it still fails, so nothing is lost there.
+    // Of item a, the swap changed only the text that fails. It fails as before, so the item's difference is 0.
     results.add(&walk("reader", &swapped, "a", 1), "p1", score(false));
     results.add(&walk("reader", &swapped, "c", 0), "p2", score(false));
     let comparison = compared(&results, &[Swap::Landmarks]);
@@ -136,7 +136,7 @@ fn after_losing(losers: usize, paths: usize) -> Listening {
 }
 
 #[test]
-fn who_loses_by_a_swap_on_many_paths_listens() {
+fn losing_by_a_swap_on_many_paths_shows_listening() {
     assert_eq!(after_losing(30, 30), Listening::Shown);
     assert_eq!(after_losing(15, 30), Listening::Shown);
     assert_eq!(after_losing(1, 30), Listening::NotShown);
@@ -144,7 +144,7 @@ fn who_loses_by_a_swap_on_many_paths_listens() {
 }
 
 #[test]
-fn who_reads_and_knows_the_map_has_rows_for_no_text_and_for_another_paths() {
+fn informed_readers_have_rows_for_an_empty_text_and_another_paths() {
     let mut results = results();
     for (set, item) in [(empty_set("original"), "a"), (swapped_set("original", Swap::OtherPath), "b")] {
         results.add(&walk("reader", &set, item, 0), "p1", score(item == "b"));

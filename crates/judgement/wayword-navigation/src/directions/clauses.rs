@@ -1,4 +1,5 @@
-//! Clauses as people mean them: the reader's, corrected where an "and" or a mark belongs to a noun phrase.
+//! Splits a text into clauses. It takes the clauses of the language reader and joins those that the reader separated at an "and" or a
+//! mark within a noun phrase ("a white couch and stripey chairs").
 
 use std::{collections::BTreeSet, ops::Range};
 use wayword_language::{
@@ -11,7 +12,7 @@ use wayword_language::{
 #[derive(Debug, Clone)]
 pub(super) struct Clause {
     pub(super) all: Range<usize>,
-    /// Without what only says more about a place.
+    /// Without the parts that only describe a place further.
     pub(super) head: Range<usize>,
 }
 
@@ -33,7 +34,7 @@ pub(super) fn mended(text: &str, tokens: &[Token]) -> Vec<Clause> {
     mended
 }
 
-/// The clauses of a text in its own words, without what joins them.
+/// The clauses of a text in its own words, without the words and marks that join them.
 pub(crate) fn clause_texts(text: &str) -> Vec<&str> {
     let tokens = tokens(text);
     let words = |clause: Clause| &text[tokens[clause.all.start].span[0]..tokens[clause.all.end - 1].span[1]];
@@ -50,8 +51,8 @@ pub(super) fn has_object(tokens: &[Token], clause: &Range<usize>) -> bool {
     clause.len() > 1 && AFTER_VERB.contains(&tokens[clause.start + 1].word.as_str())
 }
 
-/// Whether a clause goes on with the one before: what stands between them is no end, or it begins by saying more about
-/// a place.
+/// Whether a clause continues the one before: no mark ends the one before, and either no word joins the two or the clause begins by
+/// describing a place further.
 fn goes_on(tokens: &[Token], between: Range<usize>, clause: &Range<usize>) -> bool {
     let between = &tokens[between];
     let ends = |token: &Token| matches!(token.word.as_str(), "." | "!" | "?" | "," | ";" | ":");
@@ -60,14 +61,14 @@ fn goes_on(tokens: &[Token], between: Range<usize>, clause: &Range<usize>) -> bo
     !between.iter().any(ends) && (telling || !joined)
 }
 
-/// "With a white couch and stripey chairs": what the reader takes for a verb is an adjective.
+/// Whether the word that the reader takes for a verb is an adjective, as in "with a white couch and stripey chairs".
 fn is_adjective(text: &str, tokens: &[Token], from: usize, clause: &Range<usize>) -> bool {
     tokens[from..clause.start].iter().all(|token| token.word == "and")
         && !has_object(tokens, clause)
         && ends_in_task(&text[tokens[clause.start].span[0]..tokens[clause.end - 1].span[1]])
 }
 
-/// The reader's clauses that have words, without what joins them.
+/// The reader's clauses that have words, as ranges of tokens without the words and marks that join them.
 fn ranges(tokens: &[Token]) -> Vec<Range<usize>> {
     let mut ranges = Vec::new();
     let mut from = 0;

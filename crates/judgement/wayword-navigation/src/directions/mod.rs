@@ -1,4 +1,5 @@
-//! An instruction as an agent follows it: key phrases in their order, and what is to be done at the end.
+//! Splits instructions for agents that walk by phrases: into key phrases in their order, and the activity at the end (a task, or the
+//! place of arrival). There are two splitters: by rules, and by a language model.
 
 mod clauses;
 mod model;
@@ -62,10 +63,10 @@ fn short(text: &str) -> String {
     text[..end].to_owned()
 }
 
-/// The part of an instruction that is read.
+/// The part of an instruction that splitters read.
 ///
 /// # Errors
-/// Where it has no words.
+/// When it has no words.
 fn readable<'a>(text: &'a str, splitter: &str) -> Result<&'a str, ModelError> {
     let text = beginning(text, MOST_BYTES_READ);
     if text.contains(char::is_alphanumeric) {

@@ -1,4 +1,4 @@
-//! Instructions split by a language model.
+//! Splits instructions by a language model.
 
 use super::{Directions, Splitter, readable, reply};
 use crate::one_line::one_line;
@@ -14,9 +14,9 @@ pub struct ByModel {
 }
 
 const TEMPLATE: &str = include_str!("split.j2");
-/// The likeliest reply, because how an instruction is split does not change with a run's seed.
+/// Temperature 0 and a fixed seed: how an instruction is split must not change with the seed of a run.
 const SAMPLING: Sampling = Sampling { temperature: 0.0, max_tokens: 200, seed: 0 };
-/// How often a reply is asked for.
+/// Most requests for one instruction: the second is made if the first reply cannot be read.
 const ATTEMPTS: u32 = 2;
 
 impl ByModel {
@@ -55,7 +55,7 @@ impl ByModel {
     }
 }
 
-/// What a model is asked to take an instruction apart.
+/// The prompt that asks a model to split an instruction.
 ///
 /// # Errors
 /// Never, unless the template is broken.
@@ -63,7 +63,7 @@ pub fn split_prompt(instruction: &str) -> Result<String, minijinja::Error> {
     Environment::new().render_str(TEMPLATE, context! { instruction => one_line(instruction) })
 }
 
-/// Why there are no directions yet.
+/// Why an attempt gave no directions.
 enum Trouble {
     Model(ModelError),
     Unreadable(&'static str),
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_unreadable_fails_with_the_reason_and_a_stop_stays_a_stop() {
+    fn split_fails_with_the_reason_after_the_last_attempt() {
         let unreadable = ByModel::new(Scripted::new(&["Sure!", "No."])).split(&["Wait"]).remove(0).unwrap_err();
         assert!(unreadable.to_string().contains("test/scripted: ") && unreadable.to_string().contains("TASK"));
         assert!(ByModel::new(Scripted::new(&["budget"])).split(&["Wait"]).remove(0).unwrap_err().ends_run());

@@ -1,4 +1,6 @@
-//! A text in pieces: stretches of its words that lead to a place, and its closing task.
+//! Cuts an instruction into pieces for the rule-based splitter: stretches of words that each lead to one place, and the closing task.
+//! "Go down the hallway to the kitchen and clean the sink" gives "Go down the hallway", "to the kitchen" and the task "clean the
+//! sink".
 
 use super::clauses::{Clause, ends_in_task, has_object, mended, without_joints};
 use std::{collections::BTreeSet, ops::Range};
@@ -12,10 +14,10 @@ use wayword_language::{
 const MOST_TASKS: usize = 3;
 /// Most words of a piece that climbs first and then gets to a place.
 const MOST_WORDS_OF_CLIMB: usize = 16;
-/// How far before a place its preposition may stand, words.
+/// How far before a place its preposition is looked for, words.
 const REACH: usize = 7;
 
-/// A text in pieces.
+/// An instruction with its tokens, its reading and its clauses, from which pieces are cut.
 pub(super) struct Pieces<'a> {
     text: &'a str,
     tokens: Vec<Token>,
@@ -38,7 +40,7 @@ impl<'a> Pieces<'a> {
             return None;
         }
         let last = (0..self.clauses.len()).rev().find(is_task)?;
-        // "Got to the kitchen" is no task, but a mistake in writing.
+        // "Got to the kitchen" is not a task but "Go to the kitchen" with a mistake in writing.
         let is_one_of_several = |clause: &usize| {
             let head = &self.clauses[*clause].head;
             let gets_there = self.places(head).next().is_some_and(|(_, place)| place.link == Link::Goal);
@@ -55,8 +57,8 @@ impl<'a> Pieces<'a> {
 
     /// The pieces of the clauses before `end` that lead to a place, in their order.
     ///
-    /// What only turns or goes on is left out, because no picture shows it. What only climbs or names a storey is
-    /// joined to the next piece.
+    /// Pieces that only turn or go on are left out, because no picture shows that. Pieces that only climb or name a storey are
+    /// joined to the next one.
     pub(super) fn leading(&self, end: Option<usize>) -> Vec<&'a str> {
         let mut pieces = Vec::new();
         let mut climb = None;
@@ -99,7 +101,7 @@ impl<'a> Pieces<'a> {
         &self.clauses[..end.unwrap_or(self.clauses.len())]
     }
 
-    /// A clause in parts where it goes through one place and on to another: "down the hallway" and "to the kitchen".
+    /// Cuts a clause that goes through one place and on to another: "down the hallway" and "to the kitchen".
     fn cut(&self, clause: &Range<usize>) -> Vec<Range<usize>> {
         let mut cuts = vec![clause.start];
         let mut before: Option<(usize, &Place)> = None;
@@ -117,7 +119,7 @@ impl<'a> Pieces<'a> {
         cuts.windows(2).map(|ends| without_joints(&self.tokens, ends[0]..ends[1])).collect()
     }
 
-    /// Whether a place, whose last token is before `end`, is one that the walk passes or leaves on its way to the next.
+    /// Whether the walk passes or leaves a place on its way to the next. The place's last token is before `end`.
     fn leads_on(&self, end: usize, place: &Place) -> bool {
         let mut before = (0..end).rev().take(REACH).map(|at| self.word(at));
         let mut leaves = || before.any(|word| matches!(word, "out" | "from"));
@@ -130,7 +132,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Where the walk goes on behind an "and".
+    /// The token after an "and" with which the walk goes on ("and continue"), if there is one between two places.
     fn going_on(&self, between: Range<usize>) -> Option<usize> {
         let goes_on = |at: &usize| self.word(*at - 1) == "and" && GOING_ON.contains(&self.word(*at));
         (between.start + 1..between.end).find(goes_on)
@@ -151,8 +153,8 @@ impl<'a> Pieces<'a> {
         Some(at)
     }
 
-    /// What is said about a room in a clause: from behind its preposition to where something else begins. `None` where its
-    /// preposition says that the task is elsewhere.
+    /// The words about a room in a clause: from after its preposition to the beginning of the next part. `None` if its preposition
+    /// means that the task is elsewhere, as "near" or "away from".
     fn about_room(&self, clause: &Range<usize>, event: &Event) -> Option<Range<usize>> {
         let room = self.first_token(event);
         let is_in = |at: &usize| matches!(self.word(*at), "in" | "inside" | "within" | "at" | "on" | "from" | "of");
@@ -174,7 +176,7 @@ impl<'a> Pieces<'a> {
         })
     }
 
-    /// "Take two steps into the room": these steps are no stairs.
+    /// Whether the event is about paces, as in "take two steps into the room", and not about stairs.
     fn is_pace(&self, event: &Event) -> bool {
         let at = self.first_token(event);
         let before = |back: usize| at.checked_sub(back).map_or("", |at| self.word(at));

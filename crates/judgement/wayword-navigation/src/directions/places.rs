@@ -10,11 +10,11 @@ use wayword_language::reading::{What, read};
 pub struct NamedPlace {
     /// Its name: lower case, singular.
     pub name: String,
-    /// It names a room and can be no thing: "kitchen", but not "stairs".
+    /// Whether it names a room and cannot be a thing: true for "kitchen", false for "stairs".
     pub is_room: bool,
 }
 
-/// The things and rooms of a phrase, each once, in the order of the text. What the phrase says not to be there is left out.
+/// The things and rooms that a phrase names, each once, in the order of the text. Those that the phrase denies are left out.
 #[must_use]
 pub fn places(phrase: &str) -> Vec<NamedPlace> {
     let reading = read(beginning(phrase, MOST_BYTES_READ), &BTreeSet::new()).claims();

@@ -4,13 +4,13 @@ use super::{Directions, MOST_BYTES_READ, MOST_PHRASES, beginning, short};
 
 /// Names of the closing line.
 const CLOSING: [&str; 3] = ["task", "activity", "action"];
-/// What models write where there is nothing to write.
+/// Words that models write in an empty line or list.
 const NOTHING: [&str; 5] = ["none", "(none)", "n/a", "nothing", "-"];
 
 /// Reads a reply: numbered or bulleted lines, then "TASK: ...". Code fences, quotes, emphasis and chatter around are passed over.
 ///
 /// # Errors
-/// What is missing, in words.
+/// Describes the missing part in words.
 pub(super) fn directions(reply: &str) -> Result<Directions, &'static str> {
     let mut phrases: Vec<String> = Vec::new();
     let mut awaits_task = false;
@@ -44,7 +44,7 @@ fn item(line: &str) -> (bool, &str) {
     numbered().or_else(bulleted).map_or((false, line), |rest| (true, rest))
 }
 
-/// What follows the name of the closing line.
+/// The text after the name of the closing line; `None` for other lines.
 fn closing(text: &str) -> Option<&str> {
     let text = text.trim_start_matches(['*', '_', '"', '#', ' ']);
     let name =

@@ -1,14 +1,14 @@
-//! Instructions split offline, by the reader that the checks use.
+//! Splits instructions by rules, offline, with the same language reader that the checks use.
 
 use super::{Directions, MOST_PHRASES, Splitter, pieces::Pieces, readable, short};
 use wayword_core::ModelError;
 
 /// Splits instructions by rules.
 ///
-/// A key phrase is a clause that names a thing or a room, or a part of one where the clause goes through one place on
-/// to another. Clauses that only turn show nothing and are left out. The activity is the closing task, else the last
-/// piece with a place, else the whole text. A task alone that names the room in which it is done has that room as a
-/// phrase. A walk with one place has it as phrase and as activity. Everything is a run of the text's own words.
+/// A key phrase is a clause that names a thing or a room, or a part of a clause that goes through one place on to another. Clauses
+/// that only turn are left out, because no picture shows a turn. The activity is the closing task, else the last piece with a
+/// place, else the whole text. If the text is only a task that names its room, the room is the key phrase. If the walk has one
+/// place, that place is both key phrase and activity. All parts are runs of the text's own words.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ByRules;
 
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_walk_and_a_task_are_told_apart() {
+    fn walk_and_task_are_separated() {
         is("Go to the bathroom on level 2 and wipe the sink", &["Go to the bathroom on level 2"], "wipe the sink");
         is(
             "Walk through the lounge, then go up the stairs to the office and switch off the lamp next to the globe.",
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn a_task_alone_still_tells_its_room() {
+    fn a_task_alone_gives_its_room_as_phrase() {
         is(
             "Bring me the pillow from the bedroom with the blue bed",
             &["the bedroom with the blue bed"],
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_tells_of_a_place_makes_no_clause() {
+    fn descriptions_of_a_place_make_no_clause() {
         is(
             "Go to the lounge with a red sofa and stripey chairs and is next to the foyer and dust the globe that is by the door and is on a shelf",
             &["Go to the lounge with a red sofa and stripey chairs and is next to the foyer"],
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_nobody_knows_are_kept() {
+    fn unknown_words_are_kept() {
         is(
             "Go to the dinnning room on level 2 and move the chair",
             &["Go to the dinnning room on level 2"],
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_to_be_done_is_no_phrase() {
+    fn denied_moves_make_no_phrase() {
         is(
             "Don't enter the kitchen. Go past the sofa and stop at the door.",
             &["Go past the sofa"],

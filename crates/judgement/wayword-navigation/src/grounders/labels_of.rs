@@ -1,4 +1,4 @@
-//! What a view's labels say, for grounders that use them.
+//! Gets the labels and the room of a view for grounders, with the error for platforms that have none.
 
 use wayword_core::{Label, ModelError, View};
 

@@ -1,4 +1,4 @@
-//! Phrases against labels by their words: no model, no weights.
+//! A grounder that compares the names in a phrase with labels, word by word and with synonyms. It needs no model.
 
 use super::{Sees, labels_of::labels_of};
 use crate::directions::{NamedPlace, places};
@@ -9,7 +9,7 @@ use std::{
 use wayword_core::{Grounder, Label, ModelError, ObjectId, View};
 use wayword_language::lexicon::{agree, normal, same_room};
 
-/// The score of a name that means the same by another word ("couch" for a sofa, "chair" for an armchair).
+/// The score of a label that means the same by another word ("couch" for a sofa, "chair" for an armchair).
 const AKIN: f32 = 0.8;
 
 /// Scores a phrase on a view by the share of the places it names that the view's labels name too, in [0, 1]. A phrase that names

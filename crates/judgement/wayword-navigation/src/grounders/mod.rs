@@ -1,4 +1,5 @@
-//! Grounders that use labels. They are called `labels` wherever they take part, because they perceive nothing.
+//! Grounders that score phrases by ground-truth labels instead of pictures. Their names begin with `labels`, so that no reader takes
+//! their figures for those of perception.
 
 mod labels_of;
 mod lexical;
@@ -8,7 +9,7 @@ pub(crate) use labels_of::labels_of;
 pub use lexical::Lexical;
 pub use similar::Similar;
 
-/// What of a view a phrase is compared with.
+/// The part of a view that a phrase is compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sees {
     /// The names of its things, and the room of the viewpoint: the whole phrase against the whole view, as CLIP does

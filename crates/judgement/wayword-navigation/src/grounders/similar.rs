@@ -1,4 +1,4 @@
-//! Phrases against labels by a sentence encoder.
+//! A grounder that compares phrases with labels by the vectors of a sentence encoder.
 
 use super::{Sees, labels_of::labels_of};
 use crate::directions::places;
@@ -10,8 +10,8 @@ use wayword_core::{Grounder, Label, ModelError, ObjectId, TextEncoder, View};
 
 type Vector = Arc<[f32]>;
 
-/// Scores a phrase on a view by the name among its labels that is most like it: the cosine of an encoder's vectors. A
-/// view that shows nothing scores 0.
+/// Scores a phrase on a view by the label that is most similar to it: the cosine of an encoder's vectors. A view without labels
+/// scores 0.
 ///
 /// For views it takes the whole phrase; for boxes the mean over the places that the phrase names, because a detector
 /// looks for each noun by itself.
@@ -28,7 +28,7 @@ impl Similar {
         Self { sees, encoder, vectors: Mutex::default() }
     }
 
-    /// What of a phrase is compared with labels: all of it, or its places one by one.
+    /// The parts of a phrase that are compared with labels: the whole phrase, or its places one by one.
     fn parts(&self, phrase: &str) -> Vec<String> {
         let named: Vec<String> = match self.sees {
             Sees::Views => Vec::new(),
@@ -47,7 +47,7 @@ impl Similar {
         if missing.is_empty() {
             return Ok(found);
         }
-        // The lock is not held while these are computed, so that other threads do not wait.
+        // Encoded without the lock, so that other threads do not wait.
         let computed = self.encoder.encode(&missing)?;
         let mut known = self.vectors.lock().unwrap_or_else(PoisonError::into_inner);
         for (text, vector) in missing.into_iter().zip(computed) {

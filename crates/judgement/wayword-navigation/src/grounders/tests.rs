@@ -44,7 +44,7 @@ fn scores(grounder: &dyn Grounder, view: &View, phrases: &[&str]) -> Vec<f32> {
 }
 
 #[test]
-fn by_words_a_phrase_is_worth_the_share_of_its_places_that_are_seen() {
+fn lexical_scores_the_share_of_places_in_view() {
     let kitchen = view(&[("sink", 1.0), ("armchair", 2.0)], Some("kitchen"));
     let views = Lexical::new(Sees::Views);
     let told = scores(
@@ -81,7 +81,7 @@ fn the_nearest_of_the_best_is_pointed_at() {
 }
 
 #[test]
-fn without_labels_there_is_nothing_to_go_by() {
+fn ground_without_labels_is_an_error() {
     let blind = View::new(Pose::level(DVec3::ZERO, Heading::NORTH), 1.5, None, None);
     for grounder in [&Lexical::new(Sees::Views) as &dyn Grounder, &Similar::new(Sees::Views, Arc::new(Letters))] {
         let told = grounder.ground(&[&blind], &["the sink"]).remove(0).unwrap_err().to_string();

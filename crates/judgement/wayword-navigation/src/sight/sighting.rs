@@ -1,23 +1,24 @@
-//! What an agent that reads is told at a node: the ways out of it relative to its body, the room, and by which way each
-//! thing lies. This is all that it gets, and it is told nothing of other nodes.
+//! Makes the input at a node for an agent that reads: the ways out relative to its body, the room, and through which way each
+//! thing lies. The agent gets nothing else, and in particular no information about other nodes.
 //!
-//! Rooms and labelled things are ground truth, not perception. With a grounder that looks, things are what it finds.
+//! Rooms and labelled things are ground truth, not perception. With [`Things::Scores`] the things are those that the grounder
+//! finds in the views; the room still comes from the labels.
 
 use super::AgentView;
 use crate::{directions::places, error::WalkError, grounders::labels_of};
 use wayword_core::{Compass, GroundTruth, Heading, View, ViewpointId};
 use wayword_follower::online::{Hop, Sighting};
 
-/// Where the things come from that an agent is told of.
+/// The source of the things that an agent is given at a node.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Things {
     /// From the platform's labels.
     Labels,
     /// From the grounder's scores.
     Scores {
-        /// What is looked for.
+        /// The names to look for.
         names: Vec<String>,
-        /// A name that scores at least this in a view is a thing there.
+        /// A name with at least this score in a view counts as a thing there.
         threshold: f32,
     },
 }
@@ -31,7 +32,7 @@ impl Things {
     }
 }
 
-/// What an agent is told at a node, and which node each way leads to. The agent gets only the first.
+/// The input for an agent at a node, and the node that each way leads to. The agent gets only the sighting.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Surroundings {
     pub(crate) sighting: Sighting,
@@ -40,7 +41,7 @@ pub(crate) struct Surroundings {
 }
 
 impl AgentView<'_> {
-    /// What an agent that looks along `heading` is told at a node.
+    /// The surroundings of a node for an agent that looks along `heading`.
     ///
     /// # Errors
     /// When the platform gives no view, labels are asked for and there are none, or the grounder fails.

@@ -1,4 +1,4 @@
-//! The case of a word, carried over to another.
+//! Carries the letter case of a word over to its replacement: "Left" becomes "Right".
 
 /// How a word is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub(super) enum Case {
 }
 
 impl Case {
-    /// That of a text, by its first letters.
+    /// The case of a text, by its first two letters.
     pub(super) fn of(text: &str) -> Self {
         let mut letters = text.chars().filter(|c| c.is_alphabetic());
         match (letters.next(), letters.next()) {
@@ -19,7 +19,7 @@ impl Case {
         }
     }
 
-    /// A text in lower case, written so.
+    /// Writes a lower-case text in this case.
     pub(super) fn applied(self, text: &str) -> String {
         match self {
             Self::Lower => text.to_owned(),

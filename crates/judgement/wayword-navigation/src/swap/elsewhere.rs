@@ -1,9 +1,9 @@
-//! The instruction of another path.
+//! Chooses the item with the instruction that replaces another item's, for the swap [`OtherPath`](super::Swap::OtherPath).
 
 use rand::Rng;
 use wayword_core::{SceneId, ViewpointId, rng};
 
-/// An item whose instruction could replace another's.
+/// An item with an instruction that could replace another item's.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidate {
     /// The item's id.
@@ -16,8 +16,8 @@ pub struct Candidate {
     pub cluster: String,
 }
 
-/// The item whose instruction replaces that of item `at`: one of the same building, with another path and goal, for
-/// which `is_far(item at, other)` is true. `None` where there is none.
+/// Chooses the item that gives its instruction to item `at`: one of the same building, with another path and goal, for which
+/// `is_far(item at, other)` is true. `None` if there is none.
 #[must_use]
 pub fn other_path(
     items: &[Candidate],
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn the_choice_hangs_on_nothing_but_seed_and_item() {
+    fn other_path_depends_only_on_seed_and_item() {
         let items = items();
         let choose = |at: usize, seed: u64| other_path(&items, at, seed, &|_, _| true);
         assert_eq!(

@@ -1,4 +1,5 @@
-//! Replaces things and rooms by others.
+//! Replaces the things and rooms that a text names by others. Names are found by reading the text as the checks do, and the result is
+//! read again to make sure that no old name is left.
 
 use super::casing::{Case, replaced};
 use rand::seq::SliceRandom;
@@ -9,7 +10,7 @@ use wayword_language::{
     reading::{Place, What, read},
 };
 
-/// Things that replace others: common in homes, easy to tell apart, and no rooms.
+/// Things that replace others: common in homes, clearly different from each other, and not rooms.
 const THINGS: [&str; 36] = [
     "sofa",
     "bed",
@@ -65,7 +66,7 @@ const ROOMS: [&str; 14] = [
     "entryway",
     "attic",
 ];
-/// How often a text is read again, because some names are only read once others are gone.
+/// Most rounds of reading and replacing. One round is not enough, because the reader finds some names only after others are replaced.
 const ROUNDS: usize = 3;
 /// How far before a place its own names are looked for ("bathroom" of "bathroom door"), bytes.
 const REACH_BYTES: usize = 60;
@@ -98,9 +99,9 @@ pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
 struct Named {
     name: String,
     is_room: bool,
-    /// With the names that say which one it is: "bathroom door".
+    /// The bytes of the name together with the names before it that specify it, as in "bathroom door".
     span: [usize; 2],
-    /// Those names.
+    /// Those specifying names.
     tells_which: Vec<String>,
 }
 
@@ -127,7 +128,8 @@ fn is_known(name: &str) -> bool {
     thing(name).is_some() || room_name(name).is_some()
 }
 
-/// "Exit the building via the door", "exit the room using the door": what the reader takes for a name runs into the next one.
+/// Whether a name ends in a word that joins it to the next one. The reader takes such runs for names in "exit the building via the
+/// door" or "exit the room using the door".
 fn ends_in_joint(name: &str) -> bool {
     let last = name.rsplit(' ').next().unwrap_or_default();
     matches!(last, "via" | "thru" | "passed") || (last.ends_with("ing") && last.len() > 5)
@@ -142,7 +144,7 @@ fn right_before(text: &str) -> Option<(usize, String)> {
     (is_known(&place.name) && !gap.is_empty() && gap.trim().is_empty()).then_some((from + last.span[0], place.name))
 }
 
-/// The names that replace others.
+/// The replacements of one text: the free names, the text's own names, and the pairs chosen so far.
 struct Others {
     things: Vec<&'static str>,
     rooms: Vec<&'static str>,
@@ -175,7 +177,7 @@ impl Others {
         self.old.iter().any(|old| agree(old, name) || same_room(old, name))
     }
 
-    /// The replacement of a name: one that replaces nothing else, while there are any.
+    /// The replacement of a name. It is one that replaces no other name, as long as there are any.
     fn instead_of(&mut self, named: &Named) -> Option<&'static str> {
         if let Some(given) = self.given.get(&named.name) {
             return Some(given);
@@ -227,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn every_name_that_stands_in_is_read_as_itself() {
+    fn every_replacement_is_read_as_itself() {
         for (names, is_room) in [(&THINGS[..], false), (&ROOMS[..], true)] {
             for name in names {
                 for written in [(*name).to_owned(), plural(name)] {
@@ -252,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn articles_follow_and_what_tells_which_goes() {
+    fn replacement_adapts_articles_and_drops_specifying_names() {
         let of = |item: &str| swapped("Open an oven in a bathroom cabinet", 3, item).unwrap();
         let texts: Vec<String> = (0..20).map(|item| of(&item.to_string())).collect();
         for text in &texts {
@@ -265,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_without_names_has_nothing_to_swap() {
+    fn a_text_without_names_is_not_swapped() {
         assert_eq!(swapped("Turn left and walk on.", 1, "item"), None);
         assert!(
             swapped("Exit the building via the door", 1, "item").unwrap().starts_with("Exit the building via the ")

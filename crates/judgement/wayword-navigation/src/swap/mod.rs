@@ -1,4 +1,5 @@
-//! Instructions made wrong in one way. An agent that does as well by them does not listen to that.
+//! Swap tests: makes instructions wrong in one respect, such as left for right. If an agent does as well by the wrong texts, it does
+//! not use that information.
 
 mod casing;
 mod elsewhere;
@@ -50,10 +51,10 @@ impl fmt::Display for Swap {
 /// Longest text that is swapped, bytes; texts by people have up to about 2,500.
 const MOST_BYTES: usize = 8_000;
 
-/// A text made wrong in one way. `None` where that would change nothing, where the text is too long to be an instruction, and for
-/// [`Swap::OtherPath`], whose text the caller takes from the item that [`other_path`] chooses.
+/// Makes a text wrong in one way. `None` if the text would stay the same, or is too long to be an instruction. Also `None` for
+/// [`Swap::OtherPath`]: the caller takes that text from the item that [`other_path`] chooses.
 ///
-/// What is random depends only on the seed and the item's id.
+/// Random choices depend only on the seed and the item's id.
 #[must_use]
 pub fn swapped(swap: Swap, text: &str, seed: u64, item: &str) -> Option<String> {
     if text.len() > MOST_BYTES {
@@ -79,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn each_swap_changes_what_it_names_and_long_texts_stay() {
+    fn each_swap_changes_its_subject_and_leaves_long_texts() {
         let text = "Turn left at the sofa. Wait.";
         assert_eq!(swapped(Swap::Directions, text, 1, "item").as_deref(), Some("Turn right at the sofa. Wait."));
         assert!(swapped(Swap::Landmarks, text, 1, "item").unwrap().starts_with("Turn left at the "));

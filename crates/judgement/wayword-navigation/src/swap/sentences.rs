@@ -1,4 +1,4 @@
-//! Sentences in another order.
+//! Puts the sentences of a text in another order; if there is only one sentence, its clauses.
 
 use super::casing::{capitalised, uncapitalised};
 use crate::directions::clause_texts;
@@ -6,8 +6,8 @@ use rand::Rng;
 use wayword_core::rng;
 use wayword_language::text::words;
 
-/// The text with each of its sentences in another place, or each of its clauses where it has one sentence. `None` where
-/// that changes nothing.
+/// The text with each of its sentences in another place, or each of its clauses if it has one sentence. `None` if the words stay
+/// the same.
 pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
     let sentences = sentences(text);
     let clauses = if sentences.len() > 1 { Vec::new() } else { clause_texts(text) };
@@ -16,7 +16,7 @@ pub(super) fn swapped(text: &str, seed: u64, item: &str) -> Option<String> {
     (words(&new) != words(text)).then_some(new)
 }
 
-/// Another order in which nothing stays in its place (Sattolo 1986); `None` for fewer than two.
+/// A random order in which every element changes its place (Sattolo 1986); `None` for fewer than two.
 fn order(count: usize, seed: u64, item: &str) -> Option<Vec<usize>> {
     if count < 2 {
         return None;
@@ -49,7 +49,7 @@ fn of_clauses(text: &str, clauses: &[&str], order: &[usize]) -> String {
     joined + &end.map_or_else(String::new, String::from)
 }
 
-/// The sentences of a text that have words, each with its closing mark. The dot of "2.5" and that of "3." within a list end none.
+/// The sentences of a text that have words, each with its closing mark. The dot of a number such as "2.5" ends no sentence.
 fn sentences(text: &str) -> Vec<&str> {
     let mut sentences = Vec::new();
     let mut from = 0;

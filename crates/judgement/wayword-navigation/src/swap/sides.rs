@@ -1,7 +1,7 @@
 //! Swaps left and right, and up and down.
 //!
-//! Whether a word is swapped depends on the words around it, never on which of its pair it is. So a text that is
-//! swapped twice is the same as before.
+//! Whether a word is swapped depends only on the words around it, and not on which word of its pair it is. So a text that is swapped
+//! twice is the same as before. Words that mean no direction stay, as "right" in "right before the sofa".
 
 use super::casing::{Case, replaced};
 use std::collections::BTreeSet;
@@ -49,8 +49,8 @@ impl<'a> Text<'a> {
         &self.text[from..to]
     }
 
-    /// The sides that are turns, by their tokens. The reader takes "right past the sofa" for no turn and "left past the
-    /// sofa" for one; so this reads the text with one word of each pair throughout.
+    /// The tokens of sides that are turns. The reader sees a turn in "left past the sofa" but not in "right past the sofa". To
+    /// treat both words alike, this reads the text with the same word of each pair everywhere.
     fn turns(&self) -> BTreeSet<usize> {
         let one_of_pair = |at: usize| match self.word(at) {
             word if other(&SIDES, word).is_some() => Some("right"),
@@ -68,7 +68,7 @@ impl<'a> Text<'a> {
         turns.map(|event| tokens.partition_point(|token| token.span[0] < event.span[0])).collect()
     }
 
-    /// The opposite of the word at a token, where that names a direction.
+    /// The opposite of the word at a token, if the word means a direction there.
     fn opposite(&self, at: usize, turns: &BTreeSet<usize>) -> Option<&'static str> {
         let word = self.word(at);
         if let Some(other) = other(&SIDES, word) {
@@ -86,7 +86,7 @@ impl<'a> Text<'a> {
         self.about(at)
     }
 
-    /// "Turn around" for "go straight" and the other way round, where they are the whole clause.
+    /// Swaps "turn around" and "go straight", word by word, if they are a whole clause.
     fn about(&self, at: usize) -> Option<&'static str> {
         let alone = |from: usize| {
             let begins = from == 0 || self.joins(from - 1);
@@ -130,15 +130,15 @@ impl<'a> Text<'a> {
         self.leads_to(from, |word| is_stairs(word) || is_floor(word))
     }
 
-    /// Whether the noun phrase from a token on ends in such a word.
+    /// Whether the noun phrase that begins at a token ends in a word for which `is_end` is true.
     fn leads_to(&self, from: usize, is_end: impl Fn(&str) -> bool) -> bool {
         let skips = |word: &str| BEFORE_STAIRS.contains(&word) || word.bytes().all(|byte| byte.is_ascii_digit());
         let end = (from..from + 6).find(|at| is_end(self.word(*at)) || !skips(self.word(*at)));
         end.is_some_and(|at| is_end(self.word(at)))
     }
 
-    /// The edits that write another word at a token, in its case, with its article. None where the word is written in a
-    /// way that a second swap could not restore.
+    /// The edits that write another word at a token, in its letter case and with its article. None if a second swap could not
+    /// restore the spelling, as in "lEft".
     fn edits(&self, at: usize, word: &str) -> Vec<([usize; 2], String)> {
         let written = self.written(at);
         let case = Case::of(written);
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_tell_no_direction_stay() {
+    fn words_that_mean_no_direction_stay() {
         for text in [
             "Stop right before the bed",
             "Walk right past the sofa",
@@ -239,7 +239,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn swapped_twice_is_what_it_was(text in "((left|Left|LEFT|lEft|right|RIGHT|Right|up|down|Upstairs|upstairs|downstairs|a|A|AN|an|An|the|turn|Turn|go|take|around|straight|stairs|floor|of|to|top|bottom|and|then|on|your|past|sofa|wall|side|ß|[,.'’-])  ?){0,25}|\\PC{0,60}") {
+        fn swapping_twice_restores_the_text(text in "((left|Left|LEFT|lEft|right|RIGHT|Right|up|down|Upstairs|upstairs|downstairs|a|A|AN|an|An|the|turn|Turn|go|take|around|straight|stairs|floor|of|to|top|bottom|and|then|on|your|past|sofa|wall|side|ß|[,.'’-])  ?){0,25}|\\PC{0,60}") {
             if let Some(once) = swapped(&text) {
                 prop_assert_eq!(swapped(&once), Some(text));
             }

@@ -40,7 +40,7 @@ fn it_turns_where_the_text_says_and_stops_there() {
     }
 }
 
-/// The text does not say which way the bed is, and it is not where the agent looks first.
+/// The text does not mention in which direction the bed is, and it is not where the agent looks first.
 #[test]
 fn it_comes_back_from_a_dead_end() {
     let text = "Walk into the bedroom. Stop at the bed in the bedroom.";
@@ -50,10 +50,10 @@ fn it_comes_back_from_a_dead_end() {
     assert!(stood.len() > 3 && walked.steps.iter().any(|step| step.choice == Choice::Back), "{stood:?}");
 }
 
-/// Everything that the agent was given, and where: the ways out of the node, its room, its things, and nothing of any
-/// node where it did not stand.
+/// The agent is given the ways out of its node, the room and the things there, and no information about nodes that it did not
+/// visit.
 #[test]
-fn it_is_told_of_no_node_but_the_one_where_it_stands() {
+fn reader_gets_only_the_surroundings_of_its_node() {
     let world = cross();
     let grounder = Lexical::new(Sees::Views);
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
@@ -81,7 +81,7 @@ fn it_is_told_of_no_node_but_the_one_where_it_stands() {
 }
 
 #[test]
-fn ways_are_told_relative_to_the_body() {
+fn ways_are_given_relative_to_the_heading() {
     let (world, grounder) = (cross(), Lexical::new(Sees::Views));
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
     let turns = |heading_deg: f64| {
@@ -117,7 +117,7 @@ impl Grounder for West {
 }
 
 #[test]
-fn with_a_grounder_that_looks_things_are_what_scores_high_enough() {
+fn things_by_scores_are_the_names_above_the_threshold() {
     let world = cross();
     let agent_view = AgentView::new(&world, &West, false, &scene()).unwrap();
     let told = |threshold: f32| {
@@ -133,7 +133,7 @@ fn with_a_grounder_that_looks_things_are_what_scores_high_enough() {
 }
 
 #[test]
-fn labels_that_are_not_there_are_asked_for() {
+fn missing_labels_are_an_error() {
     let (world, grounder) = (Cross::blind(), Lexical::new(Sees::Views));
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
     let error = walk_by_reading(&agent_view, &Cross::start(), "Turn left.", &Things::Labels).unwrap_err();
@@ -149,7 +149,7 @@ fn surveyed(world: &Cross) -> Surveyed {
 }
 
 #[test]
-fn who_knows_the_map_goes_straight_there() {
+fn map_reader_takes_the_shortest_walk() {
     let world = cross();
     let (graph, known, start) = (world.graph(&scene()).unwrap(), surveyed(&world), Cross::start());
     for prior in [Prior::Shortest(8), Prior::TwoPieces(8)] {
@@ -182,7 +182,7 @@ fn an_empty_text_gives_the_same_walk_each_time() {
 }
 
 #[test]
-fn a_text_without_end_is_not_followed() {
+fn readers_bound_their_work_on_a_huge_text() {
     let world = cross();
     let (graph, known, start) = (world.graph(&scene()).unwrap(), surveyed(&world), Cross::start());
     let reader = MapReader::new(&graph, &known, &start, Prior::TwoPieces(8)).unwrap();

@@ -1,9 +1,9 @@
-//! What one walk of the agent may take.
+//! Limits of one walk of the agent with a language model: hops, calls, cost, and how much it remembers.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What one walk may take.
+/// Limits of one walk.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Limits {
@@ -11,10 +11,10 @@ pub struct Limits {
     pub max_hops: usize,
     /// Most calls of the model.
     pub max_calls: usize,
-    /// Most US dollars for the model's replies. The one that passes it is the last.
+    /// Most US dollars for the model's replies. The walk ends after the reply that exceeds it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_usd: Option<f64>,
-    /// How many of its last steps the agent is told again, with its reasons.
+    /// How many of the agent's last steps each prompt repeats, with their reasons.
     pub memory: usize,
 }
 

@@ -1,4 +1,5 @@
-//! What the agent remembers of its walk: a map of where it was, its last steps with their reasons, and its note.
+//! The agent's memory of its walk, which each prompt repeats: a map of the visited places, the last steps with their reasons, and
+//! the agent's note. A language model has no memory between calls, so everything that it needs is here. All parts are bounded.
 
 use super::scene::Scene;
 use crate::one_line::quoted;
@@ -6,22 +7,22 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use wayword_core::{DVec3, Heading, ViewpointId};
 
-/// Places of the map that a prompt tells, and characters of all of them. The others are only counted.
+/// Most places of the map in a prompt, and most characters of all of them. Other places are only counted.
 const MOST_PLACES: usize = 16;
 const MOST_MAP_CHARS: usize = 2_500;
-/// Ways of a place on the map.
+/// Most ways that are listed for a place on the map.
 const MOST_WAYS: usize = 8;
-/// Longest reason that is told again, characters.
+/// Longest reason of a step in a later prompt, characters.
 const MOST_REASON_CHARS: usize = 120;
 
-/// What the agent remembers.
+/// The agent's memory of one walk.
 pub(super) struct Memory {
-    /// Where it began, and which way it looked.
+    /// The position and the heading at the start.
     origin: (DVec3, Heading),
-    /// In the order in which it first came to them.
+    /// The visited places, in the order of the first visits. A place's number is its index plus 1.
     places: Vec<Place>,
     numbers: BTreeMap<ViewpointId, usize>,
-    /// Where it was, place by place, the last one being where it stands.
+    /// The numbers of the places along the walk; the last is the current place.
     trail: Vec<usize>,
     last: VecDeque<Hopped>,
     keep: usize,
@@ -29,15 +30,15 @@ pub(super) struct Memory {
     pub(super) note: Option<String>,
 }
 
-/// A place where it was.
+/// A visited place.
 struct Place {
     at: DVec3,
     seen: Option<String>,
-    /// The nodes that its ways lead to, and where these lie: both are known from the hops.
+    /// The nodes that its ways lead to, and their positions. The agent could derive both from the lengths and angles of the hops.
     ways: Vec<(ViewpointId, DVec3)>,
 }
 
-/// A step that it made.
+/// A step of the walk, as prompts repeat it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct Hopped {
     number: usize,
@@ -47,13 +48,13 @@ pub(super) struct Hopped {
 }
 
 impl Memory {
-    /// Of a walk that begins at a place; `keep` steps are told again.
+    /// Begins with an empty memory at a position. Prompts repeat the last `keep` steps.
     pub(super) fn new(at: DVec3, heading: Heading, keep: usize) -> Self {
         let (places, numbers, last, trail) = (Vec::new(), BTreeMap::new(), VecDeque::new(), Vec::new());
         Self { origin: (at, heading), places, numbers, trail, last, keep, hops: 0, note: None }
     }
 
-    /// Comes to a place, for the first time or again. Returns its number, from 1.
+    /// Records the arrival at a place, for the first time or again. Returns its number, from 1.
     pub(super) fn reach(&mut self, id: &ViewpointId, at: DVec3, ways: Vec<(ViewpointId, DVec3)>) -> usize {
         let number = self.number(id).unwrap_or_else(|| {
             self.places.push(Place { at, seen: None, ways });
@@ -64,19 +65,19 @@ impl Memory {
         number
     }
 
-    /// The number of a place where it was.
+    /// The number of a place, if it was visited.
     pub(super) fn number(&self, id: &ViewpointId) -> Option<usize> {
         self.numbers.get(id).copied()
     }
 
-    /// Keeps in short what it saw at a place.
+    /// Stores the summary of a scene with its place.
     pub(super) fn saw(&mut self, number: usize, scene: &Scene) {
         if let Some(place) = self.places.get_mut(number - 1) {
             place.seen = Some(scene.brief.clone());
         }
     }
 
-    /// Keeps a step.
+    /// Stores a step, and drops the oldest if there are too many.
     pub(super) fn hopped(&mut self, from: usize, to: usize, why: &str) {
         self.hops += 1;
         self.last.push_back(Hopped { number: self.hops, from, to, why: quoted(why, MOST_REASON_CHARS) });
@@ -90,13 +91,13 @@ impl Memory {
         self.last.iter()
     }
 
-    /// How far a direction is turned from the way that the agent looked at the start, radians, positive right.
+    /// The turn from the heading at the start to another heading, radians, positive right.
     pub(super) fn turned(&self, heading: Heading) -> f64 {
         self.origin.1.turn_to(heading)
     }
 
-    /// The places of the map, a line each, and how many are left out: where the agent stands, the start, and of the others
-    /// those where it was last.
+    /// The map: a line for each place, and how many places are left out. The current place and the start come first, then the
+    /// places that were visited last; lines are in the order of the places' numbers.
     pub(super) fn map(&self) -> (Vec<String>, usize) {
         let mut told: BTreeMap<usize, String> = BTreeMap::new();
         let mut chars = 0;
@@ -115,14 +116,14 @@ impl Memory {
         (told.into_values().collect(), left_out)
     }
 
-    /// A place, told by where it lies from the start, what was seen there, and where its ways lead.
+    /// The line of a place on the map: its position relative to the start, a summary of the things there, and where its ways lead.
     fn told(&self, number: usize, place: &Place) -> String {
         let [right_m, ahead_m, up_m] = self.off_start(place.at);
         let way = |(to, end): &(ViewpointId, DVec3)| match self.number(to) {
             Some(number) => number.to_string(),
             None => format!("new {}", self.spot(*end)),
         };
-        // What leads to places where the agent was comes first.
+        // Ways to visited places come first.
         let mut ways: Vec<_> = place.ways.iter().collect();
         ways.sort_by_key(|(to, _)| self.number(to).unwrap_or(usize::MAX));
         let more = ways.len().saturating_sub(MOST_WAYS);
@@ -133,18 +134,18 @@ impl Memory {
         format!("place {number}: right {right_m:.1}, ahead {ahead_m:.1}, up {up_m:.1}; {seen}; ways to {ways}")
     }
 
-    /// A point of the map in short, as "(1.2, -3.4)": to the right of the start, and ahead.
+    /// A point of the map as "(1.2, -3.4)": metres to the right of the start, and metres ahead of it.
     pub(super) fn spot(&self, point: DVec3) -> String {
         let [right_m, ahead_m, _] = self.off_start(point);
         format!("({right_m:.1}, {ahead_m:.1})")
     }
 
-    /// A point by its distance from the start to the right, ahead and up, as the agent looked there; metres, rounded.
+    /// A point relative to the start: to the right, ahead and up, by the heading at the start; metres, rounded to 0.1.
     fn off_start(&self, point: DVec3) -> [f64; 3] {
         let (origin, heading) = self.origin;
         let off = point - origin;
         let (ahead, right) = (heading.direction(), heading.turned(std::f64::consts::FRAC_PI_2).direction());
-        // Without minus zero.
+        // Adding 0.0 turns minus zero into zero.
         [off.dot(right), off.dot(ahead), off.z].map(|m| (m * 10.0).round() / 10.0 + 0.0)
     }
 }
@@ -155,7 +156,7 @@ mod tests {
 
     /// A corridor that is walked to its end and back again.
     #[test]
-    fn the_map_has_the_start_the_end_and_what_is_near_however_long_the_walk() {
+    fn map_has_the_start_and_the_last_places_of_a_long_walk() {
         let id = |at: usize| ViewpointId::new(format!("v{at}")).unwrap();
         let at = |at: usize| DVec3::new(0.0, at as f64, 0.0);
         let mut memory = Memory::new(at(0), Heading::NORTH, 6);

@@ -1,9 +1,9 @@
-//! The agent by a language model: it looks around and steps from node to node by calling tools.
+//! The agent with a language model: the model looks around and steps from node to node by calling tools (`observe`, `step`, `stop`).
 //!
-//! At each call the model is told its instruction, a map of where it was, its last steps with their reasons, its own
-//! note, the ways out of where it stands and, once it has looked around, what is there. It is told nothing of nodes
-//! where it did not stand. Replies that are no use are counted, told to the model, and bounded: the walk is scored as it
-//! stands.
+//! Each prompt contains the instruction, a map of the visited nodes, the last steps with their reasons, the model's own note, the
+//! ways out of the current node and, after `observe`, the things there. It contains no information about nodes that were not
+//! visited. Useless replies are counted and reported back to the model; several in a row end the walk, which is then scored as it
+//! is.
 
 mod limits;
 mod memory;
@@ -28,22 +28,22 @@ use wayword_core::LanguageModel;
 pub struct ModelWalker<'a> {
     /// The model that decides.
     pub model: &'a dyn LanguageModel,
-    /// US dollars of a call by its tokens in and out, for replies that do not tell; `None` where that is not known.
+    /// US dollars of a call by its tokens in and out, for replies without a price; `None` if prices are not known.
     pub price: Option<&'a (dyn Fn(u64, u64) -> f64 + Send + Sync)>,
-    /// How it sees.
+    /// How it perceives a place: labels, pictures or captions.
     pub looks: Looks<'a>,
-    /// What a walk may take.
+    /// The limits of a walk.
     pub limits: Limits,
     /// Seed of the model's sampling, for models that accept one.
     pub seed: u64,
 }
 
-/// Walks by an instruction as a language model decides. Where `names_object`, the model is asked for the object that the
+/// Walks by an instruction as a language model decides. If `names_object`, the model is asked for the object that the
 /// instruction means.
 ///
 /// # Errors
-/// When the platform gives no view, there is nothing of what the model is to see, its service is lost or answers no
-/// more, or it gave no answer at all.
+/// When the platform gives no view, or lacks the labels or pictures that the model is to see; when the service cannot be reached
+/// or answers no more; or when no call got an answer.
 pub fn walk_by_tools(
     agent_view: &AgentView<'_>,
     start: &Start,

@@ -1,5 +1,6 @@
-//! What the model is told: the tools, and where it stands. Each prompt stands alone, so a walk can go on from the
-//! ledger at any step. All of its parts are bounded, so it does not grow with the walk.
+//! Builds the prompt and the request of one call: the tools, and the state of the walk. A prompt does not depend on the conversation
+//! before it, so an interrupted walk can be resumed from the ledger at any step. All parts are bounded, so prompts do not grow
+//! with the walk.
 
 use super::{
     limits::Limits,
@@ -14,13 +15,13 @@ use wayword_follower::online::Hop;
 
 const SYSTEM: &str = include_str!("system.j2");
 const STATE: &str = include_str!("state.j2");
-/// Longest instruction that the model is told, characters. People's texts have up to about 2,000.
+/// Longest instruction in a prompt, characters. People's texts have up to about 2,000.
 pub const MOST_TEXT_CHARS: usize = 2_000;
-/// Most ways out that are told.
+/// Most ways out in a prompt.
 const MOST_WAYS: usize = 24;
 /// Most tokens of a reply, thinking included.
 const REPLY_TOKENS: u32 = 600;
-/// Smallest climb that is told, metres.
+/// Smallest climb or descent of a way that is mentioned, metres.
 const CLIMB_M: f64 = 0.2;
 
 const OBSERVE: Tool = Tool {
@@ -46,13 +47,13 @@ const STOP_AT: Tool = Tool {
 static TOOLS: [Tool; 3] = [OBSERVE, STEP, STOP];
 static TOOLS_FOR_OBJECTS: [Tool; 3] = [OBSERVE, STEP, STOP_AT];
 
-/// All that is worded here: walks that were asked for in other words are not continued.
+/// All texts of the prompts. A comparison stores them, so that it does not continue walks that were made with other prompts.
 #[must_use]
 pub fn wording() -> String {
     format!("{SYSTEM}{STATE}{TOOLS:?}{TOOLS_FOR_OBJECTS:?}")
 }
 
-/// How the agent sees, in the prompt's words.
+/// How the agent perceives a place, as the template of the prompt names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Sees {
@@ -67,27 +68,27 @@ pub(super) struct State<'a> {
     pub(super) sees: Sees,
     pub(super) names_object: bool,
     pub(super) memory: &'a Memory,
-    /// The number of the place where it stands, and which way it looks.
+    /// The number of the current place, and the heading.
     pub(super) here: (usize, Heading),
     pub(super) ways: &'a [Way],
-    /// What it saw there, if it looked.
+    /// The scene at the current place, if the agent has looked around.
     pub(super) scene: Option<&'a Scene>,
     pub(super) limits: &'a Limits,
     pub(super) calls: usize,
     pub(super) hops: usize,
-    /// What was wrong with its last reply.
+    /// The problem of the last reply, if it was useless.
     pub(super) trouble: Option<&'a str>,
     pub(super) seed: u64,
 }
 
-/// A way out, as it is told.
+/// A way out, as the prompt describes it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct Way {
     words: String,
 }
 
 impl Way {
-    /// A hop that leads to the place of that number, where the agent was before, or else to a new spot of the map.
+    /// Describes a hop that leads to the visited place with the number `leads_to`, or else to the new point `spot` of the map.
     pub(super) fn new(hop: &Hop, leads_to: Option<usize>, spot: &str) -> Self {
         let rise_m = hop.length_m * libm::sin(hop.elevation_rad);
         let climb = match rise_m {

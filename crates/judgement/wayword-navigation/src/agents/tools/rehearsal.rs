@@ -1,4 +1,4 @@
-//! What a walk along a known route would ask of a model, for estimates before anything is asked.
+//! Rehearses a walk along a known route without calling a model, to estimate the tokens and the cost of real walks.
 
 use super::{
     Limits, Looks, ModelWalker,
@@ -8,11 +8,11 @@ use super::{
 use crate::{agents::Start, error::WalkError, sight::AgentView};
 use wayword_core::{LanguageModel, ModelError, Reply, Request, ViewpointId};
 
-/// The requests of a walk along a route, of a model that looks around at each place and then steps on, and stops at the
-/// end. Nothing is asked. A route that leaves the graph ends there.
+/// The requests of a walk along a route by a model that looks around at each place, steps on, and stops at the end. No model is
+/// called. If the route leaves the graph, the walk ends there.
 ///
 /// # Errors
-/// When the platform gives no view, or there is nothing of what the model is to see.
+/// When the platform gives no view, or lacks the labels or pictures that the model is to see.
 pub fn rehearse(
     agent_view: &AgentView<'_>,
     start: &Start,
@@ -42,7 +42,7 @@ pub fn rehearse(
 const TYPICAL_REASON: &str = "The instruction says to go past the table, and this way leads past it.";
 const TYPICAL_NOTE: &str = "Out of the bedroom and past the table; next: turn left into the kitchen.";
 
-/// A model that is never asked.
+/// A placeholder for the model, which is never called.
 struct Silent;
 
 impl LanguageModel for Silent {

@@ -1,7 +1,8 @@
-//! What a model's reply calls: tools as lines of a fixed form, whether the service had tool calls or not.
+//! Reads the tool calls in a model's reply: lines with the tool's name and JSON, as in `step {"way": 2, "why": "..."}`. Replies of
+//! services with native tool calls are in this form too.
 //!
-//! Models write JSON in many ways, so some that can only mean one call are read too: an object that names its tool,
-//! and, where it is the whole reply, a name with nothing but a number behind it. Prose is not taken for a call.
+//! Models write calls in many ways, so other unambiguous forms are read as well: an object that names its tool, and a reply that
+//! consists only of a name and at most a number. Prose is never taken for a call.
 
 use crate::one_line::quoted;
 use serde_json::Value;
@@ -12,11 +13,11 @@ pub(super) struct Called {
     pub(super) act: Act,
     /// The model's reason, in one line; empty where it gave none.
     pub(super) why: String,
-    /// What it wants to be told again.
+    /// A note that the model wants to see in the next prompts.
     pub(super) note: Option<String>,
 }
 
-/// What is to be done.
+/// The action of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Act {
     /// Look around.
@@ -30,7 +31,7 @@ pub(super) enum Act {
 /// An object that a model names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Pointed {
-    /// By its number among those that it was shown.
+    /// By its number in the list that the prompt had.
     Number(usize),
     /// In words.
     Words(String),
@@ -69,14 +70,14 @@ fn with_json(text: &str) -> Vec<Called> {
     calls
 }
 
-/// The tool that a line begins with, and what stands behind it.
+/// The tool that a line begins with, and the rest of the line.
 fn named(line: &str) -> Option<(&'static str, &str)> {
     let is_name = |name: &&str| line.get(..name.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(name));
     let name = NAMES.into_iter().find(is_name)?;
     Some((name, line[name.len()..].trim_start_matches([' ', ':', '(', '\t'])))
 }
 
-/// A call with JSON that begins at a byte of the text, and the byte behind it.
+/// Reads a call with JSON that begins at a byte of the text; returns it with the position after it, bytes.
 fn object(text: &str, from: usize, name: Option<&str>) -> (Option<Called>, usize) {
     let mut values = serde_json::Deserializer::from_str(&text[from..]).into_iter::<Value>();
     let Some(Ok(value)) = values.next() else { return (None, from) };
@@ -87,7 +88,7 @@ fn object(text: &str, from: usize, name: Option<&str>) -> (Option<Called>, usize
     (name.or(own).and_then(|name| called(name, inner.as_ref().unwrap_or(&value))), after)
 }
 
-/// The arguments of a call: an object, also one that stands in a text.
+/// The arguments of a call: an object, or a string that contains one as JSON.
 fn arguments(value: &Value) -> Option<Value> {
     let object = match value {
         Value::String(text) => serde_json::from_str(text).ok()?,
@@ -96,7 +97,7 @@ fn arguments(value: &Value) -> Option<Value> {
     object.is_object().then_some(object)
 }
 
-/// A reply that is nothing but a tool with at most a number.
+/// Reads a reply that consists only of a tool's name and at most a number.
 fn bare(reply: &str) -> Option<Called> {
     let (name, rest) = named(reply.trim_matches('`'))?;
     let rest = rest.trim_end_matches(|c: char| c.is_whitespace() || ")`.".contains(c));
@@ -122,7 +123,7 @@ fn called(name: &str, arguments: &Value) -> Option<Called> {
     Some(Called { act, why: words("why").unwrap_or_default(), note })
 }
 
-/// A number, also one that stands in quotes or brackets, or has a decimal point.
+/// Reads a number; it may be in quotes or brackets, or have a decimal point.
 fn number(value: &Value) -> Option<usize> {
     match value {
         Value::String(text) => text.trim_matches(|c: char| c.is_whitespace() || "[]".contains(c)).parse().ok(),

@@ -1,41 +1,41 @@
-//! What the tool `observe` tells of a place: labels, captions or pictures of four views.
+//! The result of the tool `observe`: the things around a place, as labels, as captions or as pictures of the four views.
 
 use crate::{error::WalkError, one_line::quoted, sight::AgentView};
 use std::sync::Arc;
 use wayword_core::{GroundTruth, Heading, Image, Label, ModelError, ObjectId, View, ViewpointId};
 
-/// How the agent sees.
+/// How the agent perceives a place.
 #[derive(Clone, Copy)]
 pub enum Looks<'a> {
-    /// It is told the platform's labels and the name of the room: ground truth, not perception.
+    /// By the platform's labels and the name of the room: ground truth, not perception.
     Labels,
-    /// It is shown the four pictures.
+    /// By the four pictures.
     Pictures,
-    /// It is told in words what the four pictures show.
+    /// By captions of the four pictures, from another model.
     Captions(&'a dyn Describes),
 }
 
-/// Says in words what a view shows.
+/// Describes views in words.
 pub trait Describes: Send + Sync {
-    /// What the view shows, in a sentence or a few.
+    /// Describes a view in one or a few sentences.
     ///
     /// # Errors
-    /// When it cannot be said.
+    /// When the view has no picture, or the model fails.
     fn describe(&self, view: &View) -> Result<String, ModelError>;
 }
 
-/// What was seen from a place.
+/// Everything around a place, as the prompt describes it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Scene {
-    /// The name of the room, where the agent is told one.
+    /// The name of the room; `None` if the labels have none, or the agent perceives by pictures or captions.
     pub(super) room: Option<String>,
-    /// What there is, a line for each direction.
+    /// A line for each direction.
     pub(super) lines: Vec<String>,
     /// Pictures, in the order of the lines.
     pub(super) pictures: Vec<Arc<Image>>,
-    /// What is kept of it on the map.
+    /// The summary for the map.
     pub(super) brief: String,
-    /// Its objects with their names, by their numbers from 1; empty where the agent is not to name one.
+    /// The objects with their names; the first has number 1. Empty if the agent need not name an object.
     pub(super) objects: Vec<(ObjectId, String)>,
     /// How many things there are.
     pub(super) things: usize,
@@ -43,13 +43,13 @@ pub(super) struct Scene {
     pub(super) undescribed: usize,
 }
 
-/// Most things of a place that are told, and characters of all of them.
+/// Most things of a place in a prompt, and most characters of all of them.
 const MOST_THINGS: usize = 40;
 const MOST_CHARS: usize = 2_000;
 /// Longest name, and longest caption of a view, characters.
 const MOST_NAME_CHARS: usize = 40;
 const MOST_CAPTION_CHARS: usize = 450;
-/// Names of things that are kept of a place, and characters that are kept of each caption.
+/// Most names in the summary of a place, and characters of each caption in it.
 const KEPT_NAMES: usize = 6;
 const KEPT_CAPTION_CHARS: usize = 40;
 /// Sectors of 45 degrees, clockwise from ahead.
@@ -61,7 +61,7 @@ fn sector(turn_rad: f64) -> usize {
     (turn_rad.to_degrees() / 45.0).round().rem_euclid(8.0) as usize % SECTORS.len()
 }
 
-/// Looks around a place along `heading`. Objects get numbers where the agent is to name one.
+/// Looks around a place. `heading` is ahead. Objects get numbers if `numbers_objects`, so that the agent can name one.
 pub(super) fn look(
     agent_view: &AgentView<'_>,
     (here, heading): (&ViewpointId, Heading),
@@ -81,7 +81,7 @@ pub(super) fn look(
 fn labelled(mut labels: Vec<Label>, room: Option<String>, heading: Heading, numbers_objects: bool) -> Scene {
     labels.sort_by(|a, b| near_m(a).total_cmp(&near_m(b)).then_with(|| a.object.cmp(&b.object)));
     let things = labels.len();
-    // What is far is left out first.
+    // The nearest come first, so far things are left out.
     let mut chars = 0;
     let fits = |label: &Label| {
         chars += label.name.chars().count().min(MOST_NAME_CHARS) + 22;
@@ -103,7 +103,7 @@ fn labelled(mut labels: Vec<Label>, room: Option<String>, heading: Heading, numb
     Scene { room, lines, brief, objects, things, ..Scene::default() }
 }
 
-/// The room and the first names, each once.
+/// The summary of a place for the map: the room and the first names, each once.
 fn brief<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> String {
     let mut kept: Vec<&str> = Vec::new();
     for name in names {
@@ -115,13 +115,13 @@ fn brief<'a>(room: Option<&'a str>, names: impl Iterator<Item = &'a str>) -> Str
     if parts.is_empty() { "nothing with a name".to_owned() } else { parts.join(", ") }
 }
 
-/// How far away a labelled thing is; those of which it is not known come last.
+/// The distance of a labelled thing, metres; infinite if it is not known, so that it sorts last.
 fn near_m(label: &Label) -> f64 {
     label.distance_m.unwrap_or(f64::INFINITY)
 }
 
-/// The things of a sector, as "left: sofa (1.2 m), chair x2"; `None` where there is none. Of several with one name the
-/// nearest has its distance told. With numbers each stands by itself.
+/// The line of a sector, as "left: sofa (1.2 m), chair x2"; `None` if it has no things. Things with equal names are counted, and the
+/// distance is that of the nearest. With numbers, each thing is listed by itself.
 fn line(of: usize, named: &[(Label, String)], heading: Heading, numbers_objects: bool) -> Option<String> {
     let mut told: Vec<(&str, String, usize)> = Vec::new();
     let here = named.iter().enumerate().filter(|(_, (label, _))| sector(heading.turn_to(label.heading)) == of);
@@ -165,7 +165,7 @@ fn captioned(views: &[View; 4], heading: Heading, by: &dyn Describes) -> Result<
     for (turn_rad, view) in from_ahead(views, heading) {
         let caption = match by.describe(view) {
             Ok(caption) => quoted(&caption, MOST_CAPTION_CHARS),
-            // One view that cannot be described, as when a filter refuses its picture, does not end the walk.
+            // If a view cannot be described, for example because a filter refuses its picture, the walk goes on.
             Err(ModelError::Failed { .. }) => {
                 scene.undescribed += 1;
                 "not known".to_owned()
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_with_many_things_is_told_in_few_words() {
+    fn a_place_with_many_things_gets_a_bounded_description() {
         let long = "a cupboard with a carved front and drawers behind two doors";
         let labels =
             (0..500).map(|at| label(&format!("{at} {long}"), f64::from(at % 360), Some(f64::from(at)))).collect();

@@ -77,7 +77,7 @@ fn stood(walked: &Walked) -> Vec<&str> {
     walked.steps.iter().map(|step| step.viewpoint.as_str()).collect()
 }
 
-/// The number of the way whose words begin so, in the last prompt.
+/// The number of the way in the last prompt with a description that begins with these words.
 fn way(prompt: &str, words: &str) -> usize {
     let line = prompt.lines().find(|line| line.contains(&format!(": {words}"))).unwrap_or_else(|| panic!("{prompt}"));
     line.split(':').next().unwrap().parse().unwrap()
@@ -111,7 +111,7 @@ fn it_walks_looks_and_stops_as_the_model_calls() {
 }
 
 #[test]
-fn ways_are_told_from_the_way_it_looks() {
+fn prompt_lists_ways_relative_to_the_heading() {
     let model = Scripted::new(&["step {\"way\": 2}", "stop {}"]);
     let walked = walked_in(&cross(), &model, false, Limits::default()).unwrap();
     let prompts = model.prompts();
@@ -136,7 +136,7 @@ fn it_names_an_object_by_its_number_or_in_words() {
     }
 }
 
-/// Each ends within its bounds, is counted, and is scored where it stands.
+/// Each walk ends within its limits, its useless replies are counted, and it is scored at the place where it ended.
 #[test]
 fn a_model_that_breaks_ends_its_walk() {
     let limits = Limits { max_hops: 8, max_calls: 12, ..Limits::default() };
@@ -177,7 +177,7 @@ fn hops_calls_and_money_are_bounded() {
 }
 
 #[test]
-fn what_was_wrong_is_told_and_forgotten_after_a_good_reply() {
+fn prompt_reports_a_problem_until_the_next_good_reply() {
     let model = Scripted::new(&["Hm.", "step {\"way\": 9}", "observe {}", "stop {}"]);
     walked_in(&cross(), &model, false, Limits::default()).unwrap();
     let prompts = model.prompts();
@@ -187,7 +187,7 @@ fn what_was_wrong_is_told_and_forgotten_after_a_good_reply() {
 }
 
 #[test]
-fn a_service_that_is_lost_is_no_end_of_a_walk() {
+fn a_lost_service_is_an_error_and_not_the_end_of_a_walk() {
     let error = walked_in(&cross(), &Scripted::new(&["(lost)"]), false, Limits::default()).unwrap_err();
     assert!(matches!(error, WalkError::Model(ModelError::Lost { .. })), "{error}");
     let blind = walked_in(&Cross::blind(), &Scripted::new(&["observe {}"]), false, Limits::default()).unwrap_err();
@@ -202,7 +202,7 @@ fn a_service_that_is_lost_is_no_end_of_a_walk() {
     assert!(error.to_string().contains("needs pictures"), "{error}");
 }
 
-/// Says what the direction of a view is.
+/// Describes a view by its direction.
 struct Says;
 
 impl Describes for Says {
@@ -212,7 +212,7 @@ impl Describes for Says {
 }
 
 #[test]
-fn captions_are_told_by_direction_and_in_one_line() {
+fn prompt_lists_captions_by_direction_in_one_line_each() {
     let world = cross();
     let grounder = Lexical::new(By::Views);
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
@@ -272,14 +272,14 @@ fn a_model_without_a_single_answer_fails_with_its_reason() {
 }
 
 #[test]
-fn a_number_names_only_what_the_model_was_shown() {
+fn object_numbers_refer_to_the_list_in_the_prompt() {
     let replies = ["step(2)", "step {\"way\": 1}\nobserve {}\nstop {\"object\": 1}"];
     let walked = walked_in(&cross(), &Scripted::new(&replies), true, Limits::default()).unwrap();
     assert_eq!((walked.object, walked.end), (None, End::Stopped));
 }
 
 #[test]
-fn money_that_nobody_knows_ends_a_walk_with_a_limit() {
+fn unknown_prices_end_a_walk_with_a_money_limit() {
     let unpriced = |price: Option<&(dyn Fn(u64, u64) -> f64 + Send + Sync)>| {
         let (world, grounder) = (cross(), Lexical::new(By::Views));
         let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
@@ -292,7 +292,7 @@ fn money_that_nobody_knows_ends_a_walk_with_a_limit() {
     assert_eq!(unpriced(Some(&|tokens_in, _| tokens_in as f64 / 200.0)), (End::Money, Some(1.0)));
 }
 
-/// Steps on for ever, and does not say what that costs.
+/// Steps on for ever, and reports no price.
 struct Unpriced;
 
 impl LanguageModel for Unpriced {
@@ -308,7 +308,7 @@ impl LanguageModel for Unpriced {
 }
 
 #[test]
-fn the_map_keeps_what_was_said_of_the_pictures() {
+fn map_repeats_the_captions_of_visited_places() {
     let world = cross();
     let grounder = Lexical::new(By::Views);
     let agent_view = AgentView::new(&world, &grounder, false, &scene()).unwrap();
@@ -327,7 +327,7 @@ fn the_map_keeps_what_was_said_of_the_pictures() {
     assert_eq!(walked.effort.unwrap().undescribed, 4);
 }
 
-/// Describes nothing, as a service whose filter refuses every picture.
+/// Fails for every view, like a service with a filter that refuses all pictures.
 struct Blind;
 
 impl Describes for Blind {

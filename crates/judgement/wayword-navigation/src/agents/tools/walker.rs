@@ -1,4 +1,4 @@
-//! A walk in progress: asks the model, does what it calls, and keeps count.
+//! A walk in progress: calls the model, carries out the tool calls of its reply, and counts calls, tokens and useless replies.
 
 use super::{
     Looks, ModelWalker, Start, Walked, choice,
@@ -18,11 +18,11 @@ use wayword_core::{Heading, ModelError, ObjectId, Reply, Request, ViewpointId};
 use wayword_follower::online::Hop;
 use wayword_language::lexicon::{agree, normal};
 
-/// Replies of no use in a row that end a walk.
+/// So many useless replies in a row end a walk.
 const MOST_USELESS: usize = 3;
 /// How often a walk may take one hop in one direction.
 const MOST_TIMES_A_HOP: usize = 3;
-/// Characters of a reply of no use that are kept.
+/// Characters of a useless reply that are recorded.
 const KEPT_CHARS: usize = 200;
 
 pub(super) struct Walker<'a> {
@@ -32,20 +32,20 @@ pub(super) struct Walker<'a> {
     by: ModelWalker<'a>,
     memory: Memory,
     here: ViewpointId,
-    /// The number of the place where it stands.
+    /// The number of the current place on the map.
     number: usize,
     heading: Heading,
-    /// What was seen where it stands, if it looked.
+    /// The scene at the current place, if the agent has looked around.
     scene: Option<Scene>,
     steps: Vec<Step>,
     hopped: BTreeMap<(ViewpointId, ViewpointId), usize>,
     pub(super) effort: Effort,
-    /// What was wrong with the last reply, and with how many in a row something was.
+    /// The problem of the last reply; and in `useless` how many replies in a row had one.
     trouble: Option<String>,
     useless: usize,
-    /// Why the service gave no answer, the last time that it gave none.
+    /// The last error of the service.
     failure: Option<ModelError>,
-    /// Why it stops, and at which object.
+    /// Of the call of `stop`: the reason, and the object.
     stop: (Option<String>, Option<ObjectId>),
 }
 
@@ -80,7 +80,7 @@ impl<'a> Walker<'a> {
         walker
     }
 
-    /// The ways out of where it stands, clockwise from ahead, and the nodes that they lead to.
+    /// The ways out of the current place, clockwise from ahead, with the nodes that they lead to.
     pub(super) fn ways(&self) -> Vec<(ViewpointId, Hop)> {
         let (ways, hops) = self.agent_view.ways(&self.here, self.heading);
         let mut ways: Vec<_> = ways.into_iter().zip(hops).collect();
@@ -88,7 +88,7 @@ impl<'a> Walker<'a> {
         ways
     }
 
-    /// Comes to a place, looking along a heading.
+    /// Moves to a place, looking along a heading, and adds it to the map.
     fn arrive(&mut self, at: ViewpointId, heading: Heading) {
         let (ways, _) = self.agent_view.ways(&at, heading);
         let ways = ways.into_iter().map(|to| (to.clone(), self.agent_view.position(&to))).collect();
@@ -96,10 +96,10 @@ impl<'a> Walker<'a> {
         (self.here, self.heading, self.scene) = (at, heading, None);
     }
 
-    /// Why it may not go on, where it may not.
+    /// The limit that ends the walk, if one is reached.
     pub(super) fn spent(&self) -> Option<End> {
         let limits = &self.by.limits;
-        // Without a price, the limit may have been passed already.
+        // If prices are not known, the limit may already be exceeded.
         let is_spent = limits.max_usd.is_some_and(|most| self.effort.usd.is_none_or(|usd| usd >= most));
         match () {
             () if self.useless >= MOST_USELESS => Some(End::NoUse),
@@ -109,7 +109,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// What the model is asked where it stands.
+    /// The request for the next call of the model.
     pub(super) fn request(&self) -> Result<Request, WalkError> {
         let way = |(to, hop): &(ViewpointId, Hop)| {
             Way::new(hop, self.memory.number(to), &self.memory.spot(self.agent_view.position(to)))
@@ -135,13 +135,13 @@ impl<'a> Walker<'a> {
         })
     }
 
-    /// Asks the model. `None` where its reply is of no use.
+    /// Calls the model and reads its tool calls. `None` if the reply is useless.
     pub(super) fn ask(&mut self) -> Result<Option<Vec<Called>>, WalkError> {
         let asked = self.request()?;
         self.effort.calls += 1;
         let reply = match self.by.model.complete(&[asked]).pop() {
             Some(Ok(reply)) => reply,
-            // The service answered this prompt with nothing that can be used. Another prompt may do better.
+            // The service answered this prompt with an unusable reply. The next prompt may get a better one.
             Some(Err(error @ ModelError::Failed { .. })) => {
                 self.effort.useless.failed += 1;
                 self.refuse("it was empty or refused".to_owned(), &error.to_string());
@@ -179,17 +179,17 @@ impl<'a> Walker<'a> {
         effort.seconds += usage.seconds;
     }
 
-    /// Notes a reply of no use. `said` is the reply, or why there was none.
+    /// Records a useless reply and its problem. `said` is the reply, or the error if there was none.
     fn refuse(&mut self, trouble: String, said: &str) {
         self.effort.last_useless = Some(format!("{trouble}: {}", quoted(said, KEPT_CHARS)));
         self.trouble = Some(trouble);
         self.useless += 1;
     }
 
-    /// Does what a reply calls, one step at most: the ways of the next place are not known before. Returns why the walk
-    /// ends, where it does.
+    /// Carries out the calls of a reply, but at most one step, because the model does not know the ways of the next place yet.
+    /// Returns the reason if the walk ends.
     pub(super) fn act(&mut self, calls: Vec<Called>) -> Result<Option<End>, WalkError> {
-        // The model knows only the objects that its prompt had.
+        // Numbers of objects refer to the list in the prompt, even if an earlier call of this reply looks around anew.
         let shown = self.scene.as_ref().map(|scene| scene.objects.clone()).unwrap_or_default();
         let (mut has_done, mut has_stepped) = (false, false);
         for Called { act, why, note } in calls {
@@ -237,7 +237,7 @@ impl<'a> Walker<'a> {
         Ok(())
     }
 
-    /// Takes a way. Returns why the walk ends instead, where it does; an error says why there is no such way.
+    /// Takes a way out. Returns the reason if the walk ends instead. An error names the problem with the way's number.
     fn step(&mut self, way: Option<usize>, why: &str) -> Result<Option<End>, String> {
         let ways = self.ways();
         let Some(number) = way else { return Err("a step needs the number of a way".to_owned()) };
@@ -262,7 +262,7 @@ impl<'a> Walker<'a> {
         Ok(None)
     }
 
-    /// Adds the step at the place where it stands.
+    /// Records the decision at the current place as a step of the walk.
     fn stand(&mut self, choice: Choice, reason: Option<String>) {
         let scene = self.scene.as_ref();
         let told = Told {
@@ -275,7 +275,7 @@ impl<'a> Walker<'a> {
         self.steps.push(Step { told: Some(told), reason, ..step });
     }
 
-    /// The object that the model names: one of those that it was shown, or what its words fit best.
+    /// The object that the model names: one of those in the prompt, or the one around the place that its words fit best.
     fn pointed(&self, object: &Pointed, shown: &[(ObjectId, String)]) -> Result<Option<ObjectId>, WalkError> {
         match object {
             Pointed::Number(number) => Ok(number.checked_sub(1).and_then(|at| shown.get(at)).map(|(id, _)| id.clone())),
@@ -289,7 +289,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// The walk, where the model gave any answer.
+    /// Ends the walk and returns it; an error if no call got an answer.
     pub(super) fn done(mut self, end: End) -> Result<Walked, WalkError> {
         if let Some(failure) = self.failure.take().filter(|_| self.effort.calls == self.effort.useless.failed) {
             return Err(failure.into());
