@@ -1,4 +1,7 @@
-//! Commands, run as a program or inside a call.
+//! Runs commands inside a Python interpreter.
+//!
+//! A command runs in its own thread, with the interpreter released, so that Python can go on. The calling thread looks every 50 ms
+//! for Ctrl-C and passes messages and progress to Python.
 
 use crate::raise::{raised, raised_of};
 use clap::Parser;
@@ -15,26 +18,25 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use wayword::{
-    cli::Cli,
-    commands,
+use wayword::{cli::Cli, commands};
+use wayword_platforms::process;
+use wayword_run::{
     error::Error,
     interrupt,
     output::{Listener, Output, ProgressBar},
 };
-use wayword_platforms::process;
 
-/// How often a call looks for Ctrl-C and tells how far it is.
+/// How often a call checks for Ctrl-C and reports its progress.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// How long the end of the interpreter waits for a command of another thread.
 const FINISHED_WITHIN: Duration = Duration::from_secs(20);
 /// Stack of the thread that runs a command, bytes: as much as the main thread of a program has.
 const STACK: usize = 8 << 20;
 
-/// Whether a command runs. They run one at a time, because an interrupt means the one that runs.
+/// Whether a command runs. Commands run one at a time, because an interrupt applies to the whole process.
 static RUNS: AtomicBool = AtomicBool::new(false);
 
-/// The turn of a command.
+/// The turn of a command: while this value exists, no other command runs.
 struct Turn;
 
 impl Turn {
@@ -60,8 +62,8 @@ pub(crate) fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| wayword::main(arguments))
 }
 
-/// Runs a command inside the interpreter. `arguments` begin with the name of the command. `hears` has the methods `say(text)`
-/// and `progress(done, total, text)`. Returns the exit code and the result as JSON.
+/// Runs a command inside the interpreter. `arguments` begin with the name of the command. `hears` is a Python object with the
+/// methods `say(text)` and `progress(done, total, text)`. Returns the exit code and the result as JSON.
 #[pyfunction]
 pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -> PyResult<(u8, String)> {
     let name = arguments.first().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -74,20 +76,20 @@ pub(crate) fn call(py: Python<'_>, arguments: Vec<OsString>, hears: Py<PyAny>) -
     Ok((exit as u8, lock(&heard.data).take().unwrap_or_default()))
 }
 
-/// What the parser of the command line says: the error without its usage, and no place.
+/// The message of the command line's parser, without its usage, and with a hint.
 fn in_parts(command: &str, told: &str) -> (String, Option<String>, Option<String>) {
     let told = told.trim_start_matches("error: ");
     let what = ["\n\nUsage:", "\n\nFor more"].iter().fold(told, |told, end| told.split(end).next().unwrap_or(told));
     (what.trim().to_owned(), None, Some(format!("arguments are the flags of `wayword {command} --help`")))
 }
 
-/// Says what guards the children of this process: a program with arguments, which starts the interpreter with this module.
+/// Sets the program that guards the children of this process, with its arguments. It starts the interpreter with this module.
 #[pyfunction]
 pub(crate) fn guarded_by(program: PathBuf, arguments: Vec<OsString>) {
     process::this_program_is(process::Guardian { program, arguments });
 }
 
-/// What a command said so far.
+/// Collects the messages, the progress and the result of a command.
 #[derive(Default)]
 struct Heard {
     data: Mutex<Option<String>>,
@@ -109,19 +111,19 @@ impl Listener for Heard {
     }
 }
 
-/// What came of telling Python.
+/// How a call of the Python object `hears` ended.
 enum Told {
     Well,
     /// Python received a signal.
     Signal(PyErr),
-    /// What hears raised an exception.
+    /// The object raised an exception.
     Raised(PyErr),
     /// The interpreter ends.
     Ended,
 }
 
 impl Heard {
-    /// Tells Python what was said since the last time, and how far the work is.
+    /// Passes the messages since the last call, and the progress, to Python.
     fn tell(&self, hears: Option<&Py<PyAny>>) -> Told {
         let said = std::mem::take(&mut *lock(&self.said));
         let bar = lock(&self.bar).clone();
@@ -156,12 +158,12 @@ fn waited<T: Send>(
     let _turn = Turn::wait(py)?;
     interrupt::forget();
     let done = in_thread(py, heard, Some(hears), work);
-    // So that the children of other objects start again.
+    // Otherwise the children of other objects would not start again.
     interrupt::forget();
     done
 }
 
-/// Does work that keeps nothing, such as opening a world. Ctrl-C ends the children that it waits for.
+/// Does work that leaves no result behind, for example opening a world. Ctrl-C ends the children that the work waits for.
 pub(crate) fn patiently<T: Send>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, Error> + Send,
@@ -189,7 +191,7 @@ fn in_thread<T: Send>(
             let mut raised: Option<PyErr> = None;
             let mut is_ended = false;
             while ended.recv_timeout(LOOK_EVERY) == Err(RecvTimeoutError::Timeout) {
-                // After an exception nothing more is told.
+                // After an exception no more messages are passed on.
                 match heard.tell(hears.filter(|_| raised.is_none())) {
                     Told::Well => {}
                     Told::Signal(error) => {
@@ -240,11 +242,11 @@ pub(crate) fn finish(py: Python<'_>) {
 /// The settings of a run folder, as JSON.
 #[pyfunction]
 pub(crate) fn settings(py: Python<'_>, folder: PathBuf) -> PyResult<String> {
-    let settings = wayword::run::settings_of(&folder).map_err(|error| raised(py, error))?;
+    let settings = wayword_run::run_folder::settings_of(&folder).map_err(|error| raised(py, error))?;
     serde_json::to_string(&settings).map_err(|error| raised_of(py, "internal", (error.to_string(), None, None)))
 }
 
-/// What a panic said.
+/// The message of a panic.
 fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().cloned();
     text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Which walks a text may mean.
+//! Python's `Map`: the scenes of a platform, and the walks that fit a text.
 
 use crate::{
     call::patiently,
@@ -6,12 +6,12 @@ use crate::{
 };
 use pyo3::prelude::*;
 use std::{collections::BTreeMap, path::PathBuf};
-use wayword::{
+use wayword_core::{Heading, Platform, SceneId, ViewpointId};
+use wayword_run::{
     follow::KnownScenes,
     meant::MeantWalk,
     platforms::{self, Place},
 };
-use wayword_core::{Heading, Platform, SceneId, ViewpointId};
 
 /// The scenes of a platform, each surveyed when it is first asked for.
 #[pyclass(frozen, module = "wayword._wayword")]
@@ -70,7 +70,7 @@ impl Map {
     }
 }
 
-/// A value that Python gave, or why it cannot be one.
+/// A value from Python, or the exception for an invalid one.
 fn id<T, E: ToString>(py: Python<'_>, made: Result<T, E>) -> PyResult<T> {
     made.map_err(|error| raised_of(py, "input", (error.to_string(), None, None)))
 }

@@ -1,4 +1,4 @@
-//! Trajectories and their figures.
+//! Python's `Judge` and `Scores`: reads trajectories from Python objects, scores them, and returns their figures.
 
 use crate::{
     call::patiently,
@@ -11,14 +11,16 @@ use pyo3::{
     types::{PyBytes, PyDict, PyList, PyString, PyTuple},
 };
 use std::{collections::BTreeSet, ops::Range, path::PathBuf};
-use wayword::{
+use wayword_experiments::{
     episodes,
-    error::Error,
     judge::{Judge as Episodes, Problems, Scores as Figures, Scoring},
-    platforms::{self, Place},
 };
 use wayword_formats::submission;
 use wayword_metrics::{Metric, Rule};
+use wayword_run::{
+    error::Error,
+    platforms::{self, Place},
+};
 
 /// The episodes that trajectories are scored by.
 #[pyclass(frozen, module = "wayword._wayword")]
@@ -102,7 +104,7 @@ fn each_trajectory<'py>(
     let flawed = |at: usize| {
         move |error: PyErr| {
             let is_ours = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
-            // Anything else is what the caller's own iterators raise.
+            // All other exceptions come from the caller's own iterators and are passed on.
             let is_ours = is_ours || error.is_instance_of::<PyLookupError>(py);
             if is_ours { unread(py, at, &error.to_string()) } else { error }
         }
@@ -129,7 +131,7 @@ fn each_trajectory<'py>(
 /// How many trajectories are copied before they are scored: few, so that the copies stay in the processor's cache.
 const PART: usize = 256;
 
-/// A part of what Python handed in, copied, so that the interpreter can be released while it is scored.
+/// A part of the trajectories from Python, copied, so that the interpreter can be released while they are scored.
 #[derive(Default)]
 struct Part {
     /// All names, one after the other.
@@ -211,7 +213,7 @@ impl Part {
         Ok(())
     }
 
-    /// Keeps a text of Python's.
+    /// Copies a text from Python, and returns its place in the copies.
     fn keep(&mut self, text: &Bound<'_, PyAny>) -> PyResult<Range<usize>> {
         let first = self.names.len();
         self.names.push_str(text.cast::<PyString>()?.to_str()?);

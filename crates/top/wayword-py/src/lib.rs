@@ -1,7 +1,7 @@
-//! The extension module of the Python package: it hands calls to Wayword, and what comes back to Python.
+//! The extension module of the Python package: passes calls from Python to Wayword, and the results back.
 //!
-//! Architecture invariant: there is no logic here. What a call means is in the crate `wayword`, and how Python shows it in
-//! `python/wayword/`.
+//! Architecture invariant: there is no logic here. The crate `wayword` carries out the calls, and `python/wayword/` presents
+//! them to Python's users.
 #![allow(
     clippy::needless_pass_by_value,
     reason = "functions of a Python module own the values that were made for them"

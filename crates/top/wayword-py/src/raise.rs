@@ -1,7 +1,7 @@
-//! Errors as Python exceptions, whose classes are in `wayword/errors.py`.
+//! Turns errors into Python exceptions. Their classes are in `wayword/errors.py`.
 
 use pyo3::prelude::*;
-use wayword::{error::Error, explained::Explained};
+use wayword_run::{error::Error, explained::Explained};
 
 /// The exception of an error.
 pub(crate) fn raised(py: Python<'_>, error: Error) -> PyErr {
@@ -9,7 +9,7 @@ pub(crate) fn raised(py: Python<'_>, error: Error) -> PyErr {
     raised_of(py, kind, (what, place, hint))
 }
 
-/// The exception of a kind, with what is wrong, where, and what to do.
+/// The exception of a kind, with the problem, its place, and a hint.
 pub(crate) fn raised_of(py: Python<'_>, kind: &str, parts: (String, Option<String>, Option<String>)) -> PyErr {
     let (what, place, hint) = parts;
     let made = py

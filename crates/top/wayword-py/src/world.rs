@@ -1,13 +1,13 @@
-//! Worlds that are Python objects.
+//! Worlds that are Python objects: registers one under a name, so that commands can use it as a platform.
 
 use crate::raise::raised_of;
 use pyo3::{prelude::*, types::PyBytes};
 use std::path::PathBuf;
-use wayword::platforms::{forget_inside, put_inside};
 use wayword_platforms::process::{Inside, ProcessOptions};
+use wayword_run::platforms::{forget_inside, put_inside};
 
-/// Makes a world known by a name. `answer` takes a request and gives an answer, each a line of JSON as bytes. Returns what
-/// `data` is for it.
+/// Registers a world under a name. `answer` takes a request and returns an answer, each a line of JSON as bytes. Returns the
+/// value that `data` has for this world.
 #[pyfunction]
 #[pyo3(signature = (name, answer, width_px=None, height_px=None, spacing_m=None))]
 pub(crate) fn put_world(
@@ -21,10 +21,10 @@ pub(crate) fn put_world(
     let inside = Inside::new(move |request| {
         let answered = Python::try_attach(|py| {
             let answered = answer.call1(py, (PyBytes::new(py, request),)).and_then(|line| line.extract::<Vec<u8>>(py));
-            // An exception that the world does not turn into an answer is told like the last words of a child.
+            // An exception that the world does not turn into an answer is reported like the last words of a child process.
             answered.unwrap_or_else(|error| error.to_string().into_bytes())
         });
-        // The interpreter ends, and the one who asked with it.
+        // The interpreter is ending, and the thread that asked ends with it.
         answered.unwrap_or_default()
     });
     let options = ProcessOptions::inside(name, inside).sized(width_px, height_px, spacing_m);

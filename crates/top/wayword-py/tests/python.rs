@@ -1,7 +1,7 @@
 //! The Python package, tested in Python with the extension module of this build.
 //!
 //! `WAYWORD_PACKAGE_PYTHON` names a Python that has the packages of `python/tests/requirements.txt`; otherwise it is
-//! `python3`. What is missing is skipped, and the test says so.
+//! `python3`. Parts with missing packages are skipped with a message.
 
 #![cfg(unix)]
 #![allow(
@@ -20,7 +20,7 @@ fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../python").canonicalize().unwrap()
 }
 
-/// The extension module, which cargo builds beside this test.
+/// The extension module, which cargo builds into the folder of this test.
 fn module() -> PathBuf {
     let ends = if cfg!(target_os = "macos") { "dylib" } else { "so" };
     env::current_exe().unwrap().with_file_name(format!("lib_wayword.{ends}"))
@@ -37,7 +37,7 @@ fn python(module: &str) -> Option<String> {
     None
 }
 
-/// A folder that holds the package as it is installed.
+/// A folder with the package as it is installed.
 fn installed() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let to = folder.path().join("wayword");

@@ -1,12 +1,12 @@
-//! Items per second of whole runs, from path to checked instructions on the disk: with labels alone, and in a generated
-//! house, whose pictures are drawn.
+//! Items per second of whole runs, from path to checked instructions on the disk: with labels alone, and in a generated house
+//! with drawn pictures.
 
 #![allow(clippy::expect_used, missing_docs, reason = "a benchmark may fail")]
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
-use wayword::{
-    commands::{Summary, generate_into},
+use wayword_run::{
+    generate::{Summary, generate_into},
     output::Output,
     settings::{Asked, AskedPlatform, Draw, Walks},
 };

@@ -1,61 +1,33 @@
-//! The command line of Wayword: configuration, wiring, progress, run folders and reports.
+//! The command line of Wayword. Most commands are implemented in `wayword-run`, `wayword-report` and `wayword-experiments`; this
+//! crate parses the command line and dispatches to them. It also has the small commands around runs: demo, doctor, house,
+//! ledger, models, launch, runs.
 //!
-//! This is a library beside the binary, so that `wayword-measure` and the Python package run exactly what users run.
+//! It is a library with a thin binary, so that the Python package runs the same code as the command line.
 
-mod at_once;
-pub mod by_pictures;
-mod calibration;
-pub mod calls;
 pub mod cli;
-#[cfg(feature = "local")]
-mod clip;
 pub mod commands;
-mod count;
-pub mod demands;
-pub mod doubts;
+mod completions;
+mod demo;
+mod doctor;
+mod house;
+mod launch;
+mod ledger;
 #[cfg(feature = "local")]
-mod download_bar;
-pub mod encoder;
-pub mod episodes;
-pub mod error;
-pub mod explained;
-pub mod follow;
-mod in_order;
-pub mod interrupt;
-pub mod item;
-pub mod judge;
-pub mod looking_for;
-mod losses;
-pub mod meant;
-pub mod output;
-mod own_format;
-pub mod people;
-pub mod pictures;
-pub mod pipeline;
-pub mod plan;
-pub mod platforms;
-pub mod report;
-pub mod run;
-pub mod settings;
-mod similar;
-mod stores;
-pub mod styles;
-pub mod team;
-mod terms;
-mod text_file;
-mod texts;
-mod usable;
-#[cfg(feature = "habitat")]
-mod walking;
-mod watch;
+mod models;
+mod models_args;
+mod platform_list;
+mod report_command;
+mod runs;
 
 use clap::Parser;
 use cli::Cli;
-use error::Exit;
-use output::Output;
 use std::ffi::OsString;
-
-/// The program, with its name and its arguments. Returns the exit code.
+use wayword_run::{
+    error::Exit,
+    interrupt,
+    output::{self, Output},
+};
+/// Runs the program; `arguments` begins with its name. Returns the exit code.
 #[must_use]
 pub fn main(arguments: Vec<OsString>) -> u8 {
     wayword_platforms::process::stand_guard_if_asked(arguments.get(1..).unwrap_or_default());
@@ -84,7 +56,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
     }
 }
 
-/// If a decoder panics on a file, the error about that file reports it, and the panic prints nothing.
+/// If a decoder panics on a file, the error about that file reports it, and the message of the panic is not printed.
 pub fn leave_contained_panics_to_errors() {
     let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {

@@ -1,49 +1,16 @@
-//! The command line as the user types it.
+//! The command line: global flags and the list of commands, parsed by clap.
 
-mod check;
-mod compare;
-mod doctor;
-mod evaluate;
-mod export;
-mod house;
-mod launch;
-mod ledger;
-mod models;
-mod perceive;
-mod pictures;
-mod robustness;
-mod runs;
-mod similarity;
-mod steps;
-mod study;
-mod view;
-mod workers;
-
-use crate::settings::{Asked, AskedPlatform};
-use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
-
-pub use check::{AskedWorld, Check, Detecting};
-pub use compare::{AskedPrior, Compare, PICTURES, SuccessRule, SwapName};
-pub use doctor::Doctor;
-pub use evaluate::Evaluate;
-pub use export::{AgentDataset, Export, ExportFormat};
-pub use house::House;
-pub use launch::{Launch, LaunchCommand, LaunchKubernetes, LaunchSlurm, Pair};
-pub use ledger::{Ledger, LedgerCommand};
-pub use models::{Models, ModelsCommand};
-pub use perceive::Perceive;
-pub use pictures::Pictured;
-pub use robustness::Robustness;
-pub use runs::{Runs, RunsCommand, RunsDatabase, RunsMerge, RunsQueue, RunsRetry, RunsStatus};
-pub use similarity::{By, Similarity, Tokens};
-pub use steps::AskedSteps;
-pub use study::{
-    Control, NamedSet, Study, StudyClose, StudyCommand, StudyForget, StudyInvite, StudyMode, StudyNew, StudyPlan,
-    StudyReconcile, StudyRecruiter, StudyResults, StudyServe, StudyStatus,
+use crate::{
+    demo::Demo, doctor::args::Doctor, house::args::House, launch::args::Launch, ledger::args::Ledger,
+    models_args::Models, report_command::Report, runs::args::Runs,
 };
-pub use view::{View, ViewCommand, ViewMap, ViewPanorama, ViewPath, Walk};
-pub use workers::AskedWorkers;
+use clap::{Parser, Subcommand};
+use wayword_experiments::{
+    compare::args::Compare, evaluate::args::Evaluate, perceive::args::Perceive, robustness::args::Robustness,
+    similarity::args::Similarity, study_args::Study,
+};
+use wayword_report::{export::args::Export, view::args::View};
+use wayword_run::{calibrate::Calibrate, check::args::Check, generate::args::Generate};
 
 /// Writes and checks wayfinding instructions, as a person would give them to a robot, for any simulator.
 #[derive(Debug, Parser)]
@@ -137,98 +104,13 @@ pub enum Command {
     },
 }
 
-/// `wayword demo`.
-#[derive(Debug, Args)]
-#[command(after_long_help = "Examples:\n  wayword demo\n  wayword demo --seed 7 --out walk")]
-pub struct Demo {
-    /// Seed of the house and of the path through it.
-    #[arg(long, default_value_t = 3)]
-    pub seed: u64,
-    /// Folder for the run and its report.
-    #[arg(long, default_value = "wayword-demo")]
-    pub out: PathBuf,
-}
-
-/// `wayword generate`.
-#[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  wayword generate --paths 20 --out runs/houses
-  wayword generate --platform matterport --data DATA --paths 200 --hops 4..7 --metres 5..20 --seed 1 --out runs/random
-  wayword generate --platform matterport --data DATA --episodes REVERIE_val_seen.json --style reverie --style r2r --out runs/val_seen
-  wayword generate --platform habitat --data SCENES --connectivity GRAPHS --paths 200 --out runs/scans
-  wayword generate --style mine.toml --style r2r=R2R_train.json --out runs/styles
-  wayword generate --paths 20 --llm ollama/qwen3 --see ollama/llava --out runs/models
-  wayword generate --paths 20 --llm openai/gpt-4.1-mini --see openai/gpt-4.1-mini --max-usd 2 --dry-run
-  wayword generate --config run.toml --seed 7 --out runs/seven      (flags win over the file)
-  wayword generate --paths 100000 --out runs/big --plan             (then, on many machines, the same with:)
-  wayword generate --paths 100000 --out runs/big --shard 3/64       (or: --queue wayword_db)
-  wayword generate --paths 20 --out runs/houses --spans runs/houses-spans")]
-pub struct Generate {
-    /// Settings as TOML, with the names of these flags. A flag wins over the file.
-    #[arg(long, value_name = "FILE")]
-    pub config: Option<PathBuf>,
-    /// Folder for the run; required without --dry-run. Give the same command again to continue it.
-    #[arg(long, value_name = "DIR", required_unless_present = "dry_run")]
-    pub out: Option<PathBuf>,
-    /// Estimate the calls, tokens and money that the run would need, without making a call. The real run may need
-    /// more, because questions that are asked twice and texts that are rewritten are not counted.
-    #[arg(long)]
-    pub dry_run: bool,
-    /// Write what happens as spans into a file of this process in this folder: a line of JSON for the process and for each
-    /// chunk, item and call of a model, when it ends, with its parent and how long it took. Without words of prompts and
-    /// answers.
-    #[arg(long, value_name = "FOLDER", conflicts_with = "dry_run")]
-    pub spans: Option<PathBuf>,
-    /// Which part of it this worker makes.
-    #[command(flatten)]
-    pub workers: AskedWorkers,
-    /// The run.
-    #[command(flatten)]
-    pub asked: Asked,
-}
-
-/// `wayword calibrate`.
-#[derive(Debug, Args)]
-#[command(after_long_help = "\
-Examples:
-  wayword calibrate --platform matterport --data DATA --from R2R_train.json --out matterport.toml
-  wayword check R2R_val_seen.json --platform matterport --data DATA --calibration matterport.toml")]
-pub struct Calibrate {
-    /// The platform.
-    #[command(flatten)]
-    pub platform: AskedPlatform,
-    /// File of texts that people wrote: R2R, REVERIE, RxR or Wayword.
-    #[arg(long, value_name = "FILE")]
-    pub from: PathBuf,
-    /// File to write.
-    #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
-}
-
-/// `wayword report`.
-#[derive(Debug, Args)]
-#[command(
-    after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html"
-)]
-pub struct Report {
-    /// Run folder, or the folder of a comparison.
-    #[arg(long, value_name = "DIR")]
-    pub run: PathBuf,
-    /// Show at most this many items, those with rejected and unverified texts first. For a comparison: this many walks, with
-    /// successes and failures of each agent and set. [default: 1000; for a comparison 100]
-    #[arg(long, value_name = "N")]
-    pub items: Option<usize>,
-    /// HTML file to write. With more than 50 items it is an overview, and the items are on numbered pages beside it. [default:
-    /// report.html in the run folder]
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::Args;
     use std::collections::BTreeSet;
+    use wayword_experiments::study_args::StudyCommand;
+    use wayword_run::settings::Asked;
 
     /// Flags of `generate` that have no key in a settings file.
     const FLAGS_ALONE: [&str; 10] =
@@ -244,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_of_a_settings_file_has_its_flag_and_every_flag_its_key() {
+    fn settings_file_keys_and_flags_correspond() {
         let generate = Generate::augment_args(clap::Command::new("generate"));
         let flags = generate.get_arguments().map(|flag| flag.get_long().unwrap().replace('-', "_"));
         let flags: BTreeSet<String> = flags.chain(TABLES.map(str::to_owned)).collect();

@@ -1,47 +1,23 @@
-//! One file per command.
+//! Dispatches each command to the function that runs it.
 
-pub(crate) mod calibrate;
-mod check;
-pub(crate) mod compare;
-mod completions;
-mod config;
-mod demo;
-mod doctor;
-mod evaluate;
-mod export;
-mod generate;
-mod house;
-mod launch;
-mod ledger;
 #[cfg(feature = "local")]
-mod models;
-mod perceive;
-mod platforms;
-mod report;
-pub(crate) mod robustness;
-mod runs;
-mod similarity;
+use crate::models;
+use crate::{cli::Command, completions, demo, doctor, house, launch, ledger, platform_list, report_command, runs};
 #[cfg(feature = "study")]
-mod study;
-mod view;
-
-use crate::{
-    cli::Command,
+use wayword_experiments::study;
+use wayword_experiments::{compare, evaluate, perceive, robustness, similarity};
+use wayword_report::{export, view};
+use wayword_run::{
+    calibrate, check,
     error::{Error, Exit},
+    generate,
     output::Output,
 };
-
-pub use check::{AmbiguousText, CheckReport, CheckedText, Counts, DoubtedText, How, check_file, checked};
-pub use compare::compared;
-#[cfg(feature = "habitat")]
-pub use export::{Replayed, replayed};
-pub use generate::{Searched, Summary, generate_into};
-pub use perceive::{Extent, Measured, OfDetector, Row, measure_detector, perceive};
 
 /// Runs a command.
 ///
 /// # Errors
-/// What went wrong. The caller prints it once.
+/// The error of the command. The caller prints it.
 pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
     match command {
         Command::Demo(args) => demo::run(&args, output),
@@ -49,7 +25,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Check(args) => check::run(&args, output),
         Command::Calibrate(args) => calibrate::run(&args, output),
         Command::Export(args) => export::run(&args, output),
-        Command::Report(args) => report::run(&args, output),
+        Command::Report(args) => report_command::run(&args, output),
         Command::Compare(args) => compare::compared(&args, output),
         Command::Evaluate(args) => evaluate::run(&args, output),
         Command::Perceive(args) => perceive::run(&args, output),
@@ -67,7 +43,7 @@ pub fn run(command: Command, output: &Output) -> Result<Exit, Error> {
         Command::Models(_) => {
             Err(Error::not_built("models cannot be fetched or listed: this build runs none in process"))
         }
-        Command::Platforms => platforms::run(output),
+        Command::Platforms => platform_list::run(output),
         Command::View(args) => view::run(&args, output),
         Command::Launch(args) => launch::run(&args, output),
         Command::Runs(args) => runs::run(&args, output),

@@ -1,0 +1,193 @@
+//! Fits the weights of the follower to people's texts of known walks, and prints how they do on buildings that were left
+//! out.
+
+mod gains;
+pub mod texts;
+mod walker;
+
+use clap::Args;
+use rand::seq::SliceRandom;
+use rayon::prelude::*;
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
+use texts::{Scene, Text, texts};
+use wayword_core::{SceneId, rng};
+use wayword_follower::{
+    Fit, Guide, Prior, Tree, Trial, Weights, best,
+    change::flipped,
+    learn::{Learner, Plan, Slope},
+    online::{OnwardLearner, OnwardSlope, OnwardWeights},
+};
+use wayword_run::{error::Error, output::Output, people::left_out};
+
+/// The weight of the contrast between a text and the same text with one turn flipped.
+const CONTRAST: f64 = 1.0;
+/// How many texts one thread adds up at a time.
+const CHUNK: usize = 8;
+
+#[derive(Debug, Args)]
+pub struct Flags {
+    /// Folder of Matterport3D's and REVERIE's data.
+    #[arg(long)]
+    data: PathBuf,
+    /// File with texts, as R2R_train.json. It can be given several times. The last ten buildings by name are left out.
+    #[arg(long, required = true)]
+    episodes: Vec<PathBuf>,
+    /// Seed of the order of texts.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Rounds over all texts, for the follower that knows the map.
+    #[arg(long, default_value_t = 7)]
+    rounds: usize,
+    /// Rounds over all texts, for the follower that walks.
+    #[arg(long, default_value_t = 4)]
+    walker_rounds: usize,
+    /// Fit on at most this many texts.
+    #[arg(long)]
+    texts: Option<usize>,
+    /// Write the weights into this folder: `map.json` for a follower that knows the map, `walker.json` for one that walks.
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let (scenes, files) = texts(&flags.data, &flags.episodes)?;
+    let names: BTreeSet<SceneId> = scenes.iter().map(|scene| scene.name.clone()).collect();
+    let left_out = left_out(&names);
+    // The texts about the buildings that are left out, file by file, and all other texts together.
+    let (mut apart, mut fitted) = (Vec::new(), Vec::new());
+    for (number, (file, texts)) in flags.episodes.iter().zip(files).enumerate() {
+        let (out, kept): (Vec<Text>, Vec<Text>) =
+            texts.into_iter().partition(|text| left_out.contains(&scenes[text.scene].name));
+        apart.push((name(file), out));
+        fitted.extend(kept.into_iter().map(|text| Text { file: number, ..text }));
+    }
+    fitted.shuffle(&mut rng(flags.seed, &["fit-follower"]));
+    fitted.truncate(flags.texts.unwrap_or(usize::MAX));
+    let names = left_out.iter().map(SceneId::as_str).collect::<Vec<_>>().join(" ");
+    output.say(format!("{} texts; left out: {names}", fitted.len()));
+    let say = |what: &str, score: &dyn Fn(&[Text]) -> String| {
+        for (file, texts) in &apart {
+            output.say(format!("{what}, on the buildings left out of {file}: {}", score(texts)));
+        }
+    };
+    say("by hand", &|texts| with_map(&scenes, texts, &Weights::by_hand()));
+    let map = fit_map(flags, &scenes, &fitted, output);
+    say("with the map", &|texts| with_map(&scenes, texts, &map));
+    for (number, file) in flags.episodes.iter().enumerate() {
+        let texts: Vec<&Text> = fitted.iter().filter(|text| text.file == number).collect();
+        output.say(format!("shares of the texts of {} that a change gains more for:", name(file)));
+        output.say(gains::gains(&scenes, &texts, &map));
+    }
+    let start = OnwardWeights { done: map.clone(), going: map.clone(), ..OnwardWeights::by_hand() };
+    let walking = fit_walker(flags, &scenes, &fitted, &start, output);
+    say("walking", &|texts| walker::score(&scenes, texts, &walking));
+    if let Some(out) = &flags.out {
+        let files: Vec<String> = flags.episodes.iter().map(|file| name(file)).collect();
+        let origin = format!("people's texts of {}, without the last ten buildings by name", files.join(" and "));
+        let given: String = files.iter().map(|file| format!(" --episodes {file}")).collect();
+        let Flags { seed, rounds, walker_rounds, .. } = flags;
+        let command = format!(
+            "wayword-measure fit-follower --data DATA{given} --seed {seed} --rounds {rounds} --walker-rounds \
+             {walker_rounds} --out DIR"
+        );
+        std::fs::create_dir_all(out).map_err(Error::io(out, "make"))?;
+        for (name, text) in
+            [("map.json", map.to_json(&origin, &command)), ("walker.json", walking.to_json(&origin, &command))]
+        {
+            std::fs::write(out.join(name), text).map_err(Error::io(out, "write"))?;
+        }
+    }
+    Ok(())
+}
+
+/// The name of a file, without its folder.
+fn name(file: &Path) -> String {
+    file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+fn fit_map(flags: &Flags, scenes: &[Scene], texts: &[Text], output: &Output) -> Weights {
+    let plan = Plan { rounds: flags.rounds, rate: 0.04, batch: 48, hold: 2e-4, hold_fine: 5.0 };
+    let trees: Vec<Tree> = texts.par_iter().map(|text| tree(scenes, text)).collect();
+    let items: Vec<(&Text, &Tree)> = texts.iter().zip(&trees).collect();
+    let mut learner = Learner::new(plan, &Weights::by_hand());
+    for round in 0..plan.rounds {
+        let mut loss = 0.0;
+        for batch in items.chunks(plan.batch) {
+            let weights = learner.weights();
+            let slopes = batch.par_chunks(CHUNK).map(|items| {
+                let mut slope = Slope::default();
+                items.iter().for_each(|(text, tree)| add(&mut slope, scenes, text, tree, &weights));
+                slope
+            });
+            let slope = slopes.reduce(Slope::default, |a, b| a.plus(&b));
+            loss += slope.loss;
+            learner.step(round, &slope);
+        }
+        output.say(format!("map, round {}: loss {:.3}", round + 1, loss / items.len().max(1) as f64));
+    }
+    learner.finish()
+}
+
+/// Adds a text: its walk against the other walks, and its turns against flipped ones.
+fn add(slope: &mut Slope, scenes: &[Scene], text: &Text, tree: &Tree, weights: &Weights) {
+    let building = &scenes[text.scene].building;
+    let right = Trial::new(&text.guide, building);
+    if let Some(goal) = tree.find(&text.walk) {
+        slope.add(&right, tree, goal, weights);
+        // The same walk by an empty text teaches how long people's walks are. A text without readable words then has this to go by.
+        let nothing = Guide::read("");
+        slope.add_floor(&Trial::new(&nothing, building), tree, goal, weights);
+    }
+    let walk = Tree::single(building, &text.walk, text.heading_rad);
+    for wrong in flipped(&text.guide) {
+        slope.add_contrast(&right, &Trial::new(&wrong, building), &walk, weights, CONTRAST);
+    }
+}
+
+fn fit_walker(
+    flags: &Flags,
+    scenes: &[Scene],
+    texts: &[Text],
+    start: &OnwardWeights,
+    output: &Output,
+) -> OnwardWeights {
+    let plan = Plan { rounds: flags.walker_rounds, rate: 0.03, batch: 32, hold: 1e-4, hold_fine: 5.0 };
+    let mut learner = OnwardLearner::new(plan, start);
+    for round in 0..plan.rounds {
+        let (mut loss, mut decisions) = (0.0, 0);
+        for (number, batch) in texts.chunks(plan.batch).enumerate() {
+            let weights = learner.weights();
+            let slopes = batch.par_iter().enumerate().map(|(at, text)| {
+                let mut slope = OnwardSlope::default();
+                // Half of the walks keep to the right way, the others are the walker's own.
+                let is_own = (round + number + at) % 2 == 0;
+                walker::teach(&scenes[text.scene], text, &weights, is_own, &mut slope);
+                slope
+            });
+            let slope = slopes.reduce(OnwardSlope::default, |a, b| a.plus(&b));
+            (loss, decisions) = (loss + slope.loss, decisions + slope.decisions);
+            learner.step(round, &slope);
+        }
+        let mean = loss / decisions.max(1) as f64;
+        output.say(format!("walker, round {}: loss {mean:.3} of {decisions} decisions", round + 1));
+    }
+    learner.finish()
+}
+
+fn tree(scenes: &[Scene], text: &Text) -> Tree {
+    Tree::of(&scenes[text.scene].building, text.walk[0], text.heading_rad, Prior::default())
+}
+
+/// Success rate and SPL of the best walk.
+fn with_map(scenes: &[Scene], texts: &[Text], weights: &Weights) -> String {
+    let scores = texts.par_iter().map(|text| {
+        let scene = &scenes[text.scene];
+        let tree = tree(scenes, text);
+        let fit = Fit::new(&Trial::new(&text.guide, &scene.building), &tree, weights);
+        best(&fit, &tree).map_or([0.0; 2], |walk| text.score(scene, &tree.viewpoints(walk)))
+    });
+    texts::mean(scores)
+}

@@ -1,0 +1,88 @@
+//! The kinds of corruption.
+
+use super::{
+    moved,
+    replaced::{self, Whereabouts},
+    told::Told,
+    turns,
+};
+use crate::key::Edit;
+use rand::{Rng, seq::IndexedRandom};
+
+/// A way to make a person's text wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A left turn becomes a right turn, or the other way round.
+    TurnFlipped,
+    /// A climb becomes a descent, or the other way round.
+    ClimbFlipped,
+    /// A sentence repeated.
+    SentenceTwice,
+    /// A room replaced by one of a kind that the building lacks.
+    RoomLacking,
+    /// A room replaced by one that the building has, but not within 5 m of the path.
+    RoomElsewhere,
+    /// An object replaced by one that no label of the building has.
+    ObjectLacking,
+    /// An object replaced by one that is listed in the building, but only 8 m or more from the path.
+    ObjectFar,
+    /// An object replaced by one that is 3 to 8 m from the path, by its nearest label.
+    ObjectNear,
+    /// Two landmarks swapped.
+    LandmarksSwapped,
+    /// The place to stop at, replaced by one elsewhere in the building.
+    StopElsewhere,
+    /// The text of another path of the building.
+    OtherPath,
+}
+
+impl Kind {
+    pub(super) const ALL: [Self; 11] = [
+        Self::TurnFlipped,
+        Self::ClimbFlipped,
+        Self::SentenceTwice,
+        Self::RoomLacking,
+        Self::RoomElsewhere,
+        Self::ObjectLacking,
+        Self::ObjectFar,
+        Self::ObjectNear,
+        Self::LandmarksSwapped,
+        Self::StopElsewhere,
+        Self::OtherPath,
+    ];
+
+    /// Its name, in keys and on the command line.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::TurnFlipped => "turn-flipped",
+            Self::ClimbFlipped => "climb-flipped",
+            Self::SentenceTwice => "sentence-twice",
+            Self::RoomLacking => "room-lacking",
+            Self::RoomElsewhere => "room-elsewhere",
+            Self::ObjectLacking => "object-lacking",
+            Self::ObjectFar => "object-far",
+            Self::ObjectNear => "object-near",
+            Self::LandmarksSwapped => "landmarks-swapped",
+            Self::StopElsewhere => "stop-elsewhere",
+            Self::OtherPath => "other-path",
+        }
+    }
+
+    /// Draws the edits that corrupt a text; `None` where it has no words that this kind can change.
+    pub(super) fn edits(self, told: &Told<'_>, rng: &mut impl Rng) -> Option<Vec<Edit>> {
+        let one = |edits: Vec<Edit>, rng: &mut _| Some(vec![edits.choose(rng)?.clone()]);
+        match self {
+            Self::TurnFlipped => one(turns::turns(told.text, &told.words), rng),
+            Self::ClimbFlipped => one(turns::climbs(told.text, &told.words), rng),
+            Self::SentenceTwice => moved::twice(told, rng),
+            Self::RoomLacking => replaced::room(told, Whereabouts::Lacking, rng),
+            Self::RoomElsewhere => replaced::room(told, Whereabouts::Far, rng),
+            Self::ObjectLacking => replaced::object(told, Whereabouts::Lacking, rng),
+            Self::ObjectFar => replaced::object(told, Whereabouts::Far, rng),
+            Self::ObjectNear => replaced::object(told, Whereabouts::Near, rng),
+            Self::LandmarksSwapped => moved::swapped(told, rng),
+            Self::StopElsewhere => replaced::stop(told, rng),
+            Self::OtherPath => moved::other_path(told, rng),
+        }
+    }
+}

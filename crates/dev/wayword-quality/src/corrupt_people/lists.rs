@@ -1,0 +1,63 @@
+//! The word lists of this generator. The program does not use them, because they serve to measure it.
+
+use std::{collections::BTreeMap, sync::LazyLock};
+
+type Words = BTreeMap<&'static str, Vec<&'static str>>;
+
+pub(super) static MOTIONS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/motions.txt")));
+pub(super) static SMALL_WORDS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/small_words.txt")));
+pub(super) static ROOMS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/rooms.txt")));
+pub(super) static OBJECTS: LazyLock<Words> = LazyLock::new(|| words(include_str!("lists/objects.txt")));
+
+/// The lines of a list: a name, a colon, and its words.
+fn words(list: &'static str) -> Words {
+    let lines = list.lines().filter(|line| !line.starts_with('#'));
+    let line = |line: &'static str| {
+        let (name, words) = line.split_once(':')?;
+        Some((name.trim(), words.split(',').map(str::trim).collect()))
+    };
+    lines.filter_map(line).collect()
+}
+
+/// The words of a list under a name.
+pub(super) fn under<'l>(list: &'l Words, name: &str) -> &'l [&'static str] {
+    list.get(name).map_or(&[], |words| words.as_slice())
+}
+
+/// Whether a list has a word under a name.
+pub(super) fn has(list: &Words, name: &str, word: &str) -> bool {
+    under(list, name).contains(&word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{fs, path::Path};
+
+    #[test]
+    fn every_line_of_a_list_is_a_name_with_its_words() {
+        for (list, least) in [(&*MOTIONS, 13), (&*SMALL_WORDS, 5), (&*ROOMS, 18), (&*OBJECTS, 60)] {
+            assert!(list.len() >= least, "{}", list.len());
+            for (name, words) in list {
+                assert!(words.iter().all(|word| !word.is_empty() && *word == word.to_lowercase()), "{name}: {words:?}");
+            }
+        }
+    }
+
+    /// A generator with the reader's own words could never make a text that the reader misunderstands.
+    #[test]
+    fn this_generator_shares_no_word_with_the_reader() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/corrupt_people");
+        let readers = ["language", "checks", "synthesis", "navigation"].map(|name| format!("wayword_{name}"));
+        let mut files = 0;
+        for entry in fs::read_dir(folder).unwrap() {
+            let file = entry.unwrap().path();
+            if file.is_file() {
+                let text = fs::read_to_string(&file).unwrap();
+                assert!(!readers.iter().any(|reader| text.contains(reader)), "{}", file.display());
+                files += 1;
+            }
+        }
+        assert!(files > 5, "{files}");
+    }
+}

@@ -1,0 +1,178 @@
+//! Corrupts texts that people wrote, to measure how many of the errors `wayword check` finds.
+//!
+//! Invariant: this folder does not use the program's reader, its lexicon or its checks. The corrupted texts must be able to contain words
+//! that the reader does not know, or the measurement would flatter it.
+
+mod building;
+mod kind;
+mod lists;
+mod moved;
+mod names;
+mod replaced;
+mod text;
+mod told;
+mod turns;
+
+use crate::{
+    judged::{item, write_items},
+    key::{Corruption, Key, edited},
+};
+use building::{Building, nearest_m};
+use clap::{Args, builder::PossibleValuesParser};
+use kind::Kind;
+use rand::{
+    Rng,
+    seq::{IteratorRandom, SliceRandom},
+};
+use rayon::prelude::*;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+};
+use text::words;
+use told::Told;
+use wayword_core::{Platform, SceneId, rng};
+use wayword_experiments::episodes::{cluster, read};
+use wayword_formats::Episode;
+use wayword_run::{error::Error, output::Output, platforms};
+use wayword_world::survey;
+
+pub(crate) use text::around;
+
+/// Another path's text counts as wrong only if its goal is at least this far from the goal of the own path, metres.
+const OTHER_GOAL_M: f64 = 3.0;
+
+/// The flags of `corrupt-people`.
+#[derive(Debug, Args)]
+pub struct Flags {
+    /// Folder of Matterport3D's and REVERIE's data.
+    #[arg(long)]
+    data: PathBuf,
+    /// File with the texts: R2R or REVERIE.
+    #[arg(long)]
+    episodes: PathBuf,
+    /// Use only this building. May be given several times.
+    #[arg(long)]
+    scan: Vec<String>,
+    /// Kinds of corruption. May be given several times.
+    #[arg(long, value_parser = PossibleValuesParser::new(["all"].into_iter().chain(Kind::ALL.map(Kind::name))), default_value = "all")]
+    kind: Vec<String>,
+    /// Most texts of each kind.
+    #[arg(long, default_value_t = 300)]
+    count: usize,
+    /// Seed of the choice.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// File for the corrupted texts. The changes go into FILE.key.json in the same folder.
+    #[arg(long)]
+    out: PathBuf,
+}
+
+/// A text with one of its turns flipped; `None` where it commands no turn.
+pub(crate) fn turned(text: &str, rng: &mut impl Rng) -> Option<String> {
+    let edits = turns::turns(text, &words(text));
+    let edit = edits.into_iter().choose(rng)?;
+    Some(edited(text, vec![edit])?.0)
+}
+
+pub fn write(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let platform = platforms::open_named("matterport", Some(&flags.data), None, None)?;
+    let mut episodes = read(&flags.episodes, platform.as_ref())?;
+    episodes.retain(|episode| flags.scan.is_empty() || flags.scan.iter().any(|scan| scan == episode.scene.as_str()));
+    let known: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+    episodes.retain(|episode| known.contains(&episode.scene));
+    let is_asked = |kind: &Kind| flags.kind.iter().any(|name| name == "all" || name == kind.name());
+    let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(is_asked).collect();
+    let buildings = buildings(&episodes, platform.as_ref(), output)?;
+    let (items, corruptions) = corrupted(&episodes, &buildings, &kinds, flags.count, flags.seed);
+    if items.is_empty() {
+        let problem = format!("{}: no text of these buildings can be changed in these ways", flags.episodes.display());
+        return Err(Error::usage(problem, "give other kinds, another --scan or another file"));
+    }
+    write_items(&flags.out, &items)?;
+    let lines = table(&kinds, &corruptions);
+    Key::new(flags.seed, corruptions).write(&Key::beside(&flags.out))?;
+    output.data(&(), lines.join("\n"));
+    Ok(())
+}
+
+fn buildings(
+    episodes: &[Episode],
+    platform: &dyn Platform,
+    output: &Output,
+) -> Result<BTreeMap<SceneId, Building>, Error> {
+    let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
+    let bar = output.progress(scenes.len(), "buildings");
+    let known = scenes.into_par_iter().map(|scene| {
+        let building = Building::new(&survey(platform, scene)?);
+        bar.inc(1);
+        Ok::<_, Error>((scene.clone(), building))
+    });
+    let known = known.collect();
+    bar.finish_and_clear();
+    known
+}
+
+/// The corrupted texts, each as an item of its own, and the changes in each.
+///
+/// For each kind, all texts are tried in a random order until `count` of them could be corrupted.
+fn corrupted(
+    episodes: &[Episode],
+    buildings: &BTreeMap<SceneId, Building>,
+    kinds: &[Kind],
+    count: usize,
+    seed: u64,
+) -> (Vec<Episode>, Vec<Corruption>) {
+    let texts = episodes.iter().flat_map(|episode| (0..episode.instructions.len()).map(move |place| (episode, place)));
+    let texts: Vec<(&Episode, usize)> = texts.collect();
+    let (mut items, mut corruptions) = (Vec::new(), Vec::new());
+    for kind in kinds.iter().copied() {
+        let mut drawn = texts.clone();
+        drawn.shuffle(&mut rng(seed, &["corrupt people", kind.name()]));
+        let mut made = 0;
+        for (episode, place) in drawn {
+            if made == count {
+                break;
+            }
+            let Some(building) = buildings.get(&episode.scene) else { continue };
+            let others = if kind == Kind::OtherPath { others(episode, episodes, building) } else { Vec::new() };
+            let text = episode.instructions[place].as_str();
+            let path = building.places(&episode.viewpoints);
+            let told = Told { text, words: words(text), path, building, others: &others };
+            let purpose = ["corrupt people", kind.name(), &episode.id, &place.to_string()];
+            let edits = kind.edits(&told, &mut rng(seed, &purpose));
+            let Some((text, changes)) = edits.and_then(|edits| edited(text, edits)) else { continue };
+            let item = item(items.len(), episode, &text);
+            corruptions.push(Corruption {
+                item: item.target_object.as_ref().map_or(item.id.clone(), |object| format!("{}_{object}", item.id)),
+                of: episode.id.clone(),
+                instruction: place,
+                path: cluster(episode),
+                kind: kind.name().to_owned(),
+                changes,
+            });
+            items.push(item);
+            made += 1;
+        }
+    }
+    (items, corruptions)
+}
+
+/// The texts of all paths of the same building with another goal.
+fn others<'e>(of: &Episode, episodes: &'e [Episode], building: &Building) -> Vec<&'e str> {
+    let goal = |episode: &Episode| building.places(&episode.viewpoints[episode.viewpoints.len().saturating_sub(1)..]);
+    let own = goal(of);
+    let is_other = |episode: &&Episode| {
+        episode.scene == of.scene && nearest_m(&own, &goal(episode)).is_some_and(|off_m| off_m >= OTHER_GOAL_M)
+    };
+    let others = episodes.iter().filter(is_other);
+    others.flat_map(|episode| episode.instructions.iter().map(String::as_str)).collect()
+}
+
+fn table(kinds: &[Kind], corruptions: &[Corruption]) -> Vec<String> {
+    let count = |kind: &Kind| corruptions.iter().filter(|corruption| corruption.kind == kind.name()).count();
+    kinds.iter().map(|kind| format!("{:<18} {:>5}", kind.name(), count(kind))).collect()
+}
+
+#[cfg(test)]
+mod tests;

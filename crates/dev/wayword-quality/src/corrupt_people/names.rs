@@ -1,0 +1,166 @@
+//! Finds the rooms and objects that a text names, by this generator's own word lists and the building's labels.
+
+use super::{
+    building::{Building, parts, singular},
+    lists::{OBJECTS, ROOMS, SMALL_WORDS, has},
+    text::Word,
+};
+use wayword_core::DVec3;
+
+/// Most words of a name.
+const LONGEST_NAME: usize = 3;
+
+/// A room or an object that a text names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Named {
+    /// Byte range of the name, with the adjectives that belong to it, without its article.
+    pub(super) span: [usize; 2],
+    /// The article "a" or "an" before it.
+    pub(super) article: Option<[usize; 2]>,
+    /// Whether it is a room.
+    pub(super) is_room: bool,
+    /// The room's kind in the list of rooms, or the object's name.
+    pub(super) name: String,
+    /// Whether the name is in the plural.
+    pub(super) is_plural: bool,
+}
+
+/// The names in a text, in its order. At each word the longest name counts.
+pub(super) fn names(words: &[Word], building: &Building) -> Vec<Named> {
+    let mut names = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        let longest = (1..=LONGEST_NAME).rev().find_map(|count| {
+            let part = words.get(at..at + count)?;
+            let is_one = part[1..].iter().all(|word| word.is_joined) && ends_name(words, at + count);
+            let named =
+                if is_one { room(words, at, count).or_else(|| object(words, at, count, building)) } else { None };
+            named.map(|named| (count, named))
+        });
+        names.extend(longest.clone().map(|(_, named)| named));
+        at += longest.map_or(1, |(count, _)| count);
+    }
+    names
+}
+
+/// Whether a name may end before this word: another noun would make it a part of a longer name.
+fn ends_name(words: &[Word], next: usize) -> bool {
+    words.get(next).is_none_or(|word| !word.is_joined || has(&SMALL_WORDS, "after a name", &word.low))
+}
+
+fn joined_name(words: &[Word]) -> String {
+    words.iter().map(|word| word.low.as_str()).collect::<Vec<_>>().join(" ")
+}
+
+/// The kind of room that a name means: its key in the list of rooms.
+fn kind_of(name: &str) -> Option<&'static str> {
+    // A toilet is a thing where a text names one, and a room where a platform does.
+    let mut kinds = ROOMS.iter().filter(|(kind, _)| !kind.ends_with("stairs"));
+    kinds.find(|(_, names)| name != "toilet" && names.contains(&name)).map(|(kind, _)| *kind)
+}
+
+fn room(words: &[Word], at: usize, count: usize) -> Option<Named> {
+    let kind = kind_of(&joined_name(&words[at..at + count]))?;
+    let mut first = at;
+    while words[first].is_joined && has(&SMALL_WORDS, "room modifiers", &words[first - 1].low) {
+        first -= 1;
+    }
+    let span = [words[first].span[0], words[at + count - 1].span[1]];
+    Some(Named { span, article: article(words, first), is_room: true, name: kind.to_owned(), is_plural: false })
+}
+
+fn object(words: &[Word], at: usize, count: usize, building: &Building) -> Option<Named> {
+    let name = joined_name(&words[at..at + count]);
+    let one = parts(&name);
+    let named = one.join(" ");
+    let in_list = OBJECTS.keys().find(|object| **object == named).map(|object| (*object).to_owned());
+    let is_known = in_list.is_some() || building.has_label(&one);
+    let is_ignored = has(&SMALL_WORDS, "ignored", &named) || has(&SMALL_WORDS, "ignored", &name);
+    if !is_known || is_ignored || kind_of(&named).is_some() || !is_determined(words, at) {
+        return None;
+    }
+    let last = &words[at + count - 1];
+    let span = [words[at].span[0], last.span[1]];
+    let is_plural = singular(&last.low) != last.low;
+    Some(Named { span, article: article(words, at), is_room: false, name: in_list.unwrap_or(named), is_plural })
+}
+
+/// Whether a determiner comes before a name, with at most two adjectives between them.
+fn is_determined(words: &[Word], at: usize) -> bool {
+    let mut at = at;
+    for _ in 0..3 {
+        if at == 0 || !words[at].is_joined {
+            return false;
+        }
+        at -= 1;
+        let word = words[at].low.as_str();
+        if has(&SMALL_WORDS, "determiners", word) {
+            return true;
+        }
+        // "The kitchen table" is not any table.
+        if kind_of(word).is_some() || has(&SMALL_WORDS, "after a name", word) {
+            return false;
+        }
+    }
+    false
+}
+
+fn article(words: &[Word], at: usize) -> Option<[usize; 2]> {
+    let before = words.get(at.checked_sub(1)?).filter(|_| words[at].is_joined)?;
+    matches!(before.low.as_str(), "a" | "an").then_some(before.span)
+}
+
+impl Named {
+    /// The positions of all rooms or objects of the building that the name may mean, metres.
+    pub(super) fn places(&self, building: &Building) -> Vec<DVec3> {
+        if self.is_room { building.rooms(&self.name) } else { building.objects(&self.name) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::{building::tests::made_up_building, text::words},
+        *,
+    };
+
+    fn told(text: &str) -> Vec<(String, String)> {
+        let names = names(&words(text), &made_up_building());
+        names.into_iter().map(|named| (text[named.span[0]..named.span[1]].to_owned(), named.name)).collect()
+    }
+
+    #[test]
+    fn rooms_and_labelled_objects_are_found_as_whole_names() {
+        let text =
+            "Exit the master bedroom, pass the brown couch and the coffee table, and stop by a piano in the lounge.";
+        let expected = [
+            ("master bedroom", "bedroom"),
+            ("couch", "couch"),
+            ("coffee table", "coffee table"),
+            ("piano", "piano"),
+            ("lounge", "living room"),
+        ];
+        assert_eq!(told(text), expected.map(|(words, name)| (words.to_owned(), name.to_owned())));
+    }
+
+    #[test]
+    fn parts_of_longer_names_and_parts_of_every_building_are_no_names() {
+        for text in [
+            "Open the bedroom door",
+            "Pass the kitchen table",
+            "Follow the wall to the stairs",
+            "Pass the lamp post",
+            "Chairs everywhere",
+        ] {
+            assert_eq!(told(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn names_have_their_article_and_their_number() {
+        let text = "Pass an old mirror, the towels and a bench";
+        let names = names(&words(text), &made_up_building());
+        let told: Vec<_> = names.iter().map(|named| (named.article.is_some(), named.is_plural)).collect();
+        assert_eq!(told, [(false, false), (false, true), (true, false)]);
+    }
+}

@@ -1,0 +1,227 @@
+//! Measures how far the follower can be trusted: the calibration of its shares, and how well it separates wrong texts from right ones.
+//!
+//! Wrong texts are made in two ways: by flipping a turn of a person's text, and by taking the text of another path in the building.
+
+use crate::{corrupt_people::turned, share::table};
+use clap::Args;
+use rand::seq::IndexedRandom;
+use rayon::prelude::*;
+use std::{collections::BTreeMap, path::PathBuf};
+use wayword_core::rng;
+use wayword_fit::fit_follower::texts::{SUCCESS_M, Scene, Text, texts};
+use wayword_follower::{
+    Fit, Guide, Prior, Tree, Trial, Weights, best,
+    route::{Known, Thresholds, judge, route},
+    shares,
+};
+use wayword_run::{error::Error, output::Output};
+
+/// Bins of the calibration error, of equal width.
+const BINS: usize = 10;
+/// Bounds of ambiguity that are tried: another walk's share of the annotated one's.
+const BOUNDS: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8];
+
+#[derive(Debug, Args)]
+pub struct Flags {
+    /// File with the texts: a dataset, or the instructions of a run over its paths.
+    file: PathBuf,
+    /// Folder of Matterport3D's and REVERIE's data.
+    #[arg(long)]
+    data: PathBuf,
+    /// Only the texts of these scans.
+    #[arg(long, value_delimiter = ',', conflicts_with = "except")]
+    scans: Vec<String>,
+    /// All texts but those of these scans.
+    #[arg(long, value_delimiter = ',')]
+    except: Vec<String>,
+    /// Use at most this many texts, spread over the file.
+    #[arg(long)]
+    limit: Option<usize>,
+    /// Seed of the turns that are flipped, and of the other paths.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+/// The follower's judgement of one text.
+struct Said {
+    /// The best walk; `None` without one.
+    best: Option<Best>,
+    /// How much better the best walk to another end fits than the annotated walk, as a natural logarithm of the ratio.
+    elsewhere: f64,
+    /// The best gain from changing a turn: of the text itself, and of the text with one turn flipped; `None` without a turn.
+    turns: Option<[f64; 2]>,
+    /// [`Self::elsewhere`] of another path's text; `None` where the building has none.
+    other_path: Option<f64>,
+}
+
+/// The walk that fits best.
+struct Best {
+    share: f64,
+    /// The share of all walks that end near its end.
+    nearby: f64,
+    /// How well the best walk that ends elsewhere fits in comparison, as a natural logarithm of the ratio.
+    runner_up: f64,
+    /// Whether it ends at the goal.
+    is_right: bool,
+}
+
+pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let (scenes, files) = texts(&flags.data, std::slice::from_ref(&flags.file))?;
+    let mut all: Vec<Text> = files.into_iter().flatten().collect();
+    let is_in = |text: &Text, scans: &[String]| scans.iter().any(|one| one == scenes[text.scene].name.as_str());
+    all.retain(|text| (flags.scans.is_empty() || is_in(text, &flags.scans)) && !is_in(text, &flags.except));
+    let every = flags.limit.map_or(1, |limit| all.len().div_ceil(limit.max(1)));
+    let mut by_scene: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (at, text) in all.iter().enumerate() {
+        by_scene.entry(text.scene).or_default().push(at);
+    }
+    let picked: Vec<usize> = (0..all.len()).step_by(every.max(1)).collect();
+    let said = picked.par_iter().map(|at| said(&scenes, &all, &by_scene[&all[*at].scene], *at, flags.seed));
+    let said: Vec<Said> = said.collect();
+    output.data(&(), lines(&said).join("\n"));
+    Ok(())
+}
+
+fn said(scenes: &[Scene], all: &[Text], neighbours: &[usize], at: usize, seed: u64) -> Said {
+    let (text, weights) = (&all[at], Weights::fitted());
+    let building = &scenes[text.scene].building;
+    let tree = Tree::of(building, text.walk[0], text.heading_rad, Prior::default());
+    let fit = Fit::new(&Trial::new(&text.guide, building), &tree, weights);
+    let shares = shares(&fit, &tree);
+    let best = best(&fit, &tree).map(|walk| {
+        let is_near = |other: &usize| building.distance(tree.end(*other), tree.end(walk)) < SUCCESS_M;
+        let (near, far): (Vec<usize>, Vec<usize>) = (1..tree.len()).partition(is_near);
+        let runner_up = far.into_iter().map(|other| shares[other]).fold(0.0, f64::max);
+        Best {
+            share: shares[walk],
+            nearby: near.into_iter().map(|other| shares[other]).sum(),
+            runner_up: log_ratio(runner_up, shares[walk]),
+            is_right: text.to_goal_m[tree.end(walk)] < SUCCESS_M,
+        }
+    });
+    let known = Known { building, walk: &text.walk, heading_rad: text.heading_rad };
+    let elsewhere = |guide: &Guide| {
+        let route = route(guide, known, Some(Prior::default()), weights, Thresholds::default());
+        route.map_or(0.0, |route| log_ratio(route.other, route.share))
+    };
+    let gain = |guide: &Guide| judge(guide, known, weights, Thresholds::default()).turn_gain;
+    let purpose = |what: &'static str| rng(seed, &["reader figures", what, &at.to_string()]);
+    let turns = turned(&text.words, &mut purpose("turn"))
+        .and_then(|turned| Some([gain(&text.guide)?, gain(&Guide::read(&turned))?]));
+    let is_apart = |other: &&usize| {
+        let end = all[**other].walk.last();
+        end.is_some_and(|end| text.to_goal_m[*end] >= SUCCESS_M)
+    };
+    let others: Vec<&usize> = neighbours.iter().filter(is_apart).collect();
+    let other_path = others.choose(&mut purpose("path")).map(|other| elsewhere(&all[**other].guide));
+    Said { best, elsewhere: elsewhere(&text.guide), turns, other_path }
+}
+
+/// The natural logarithm of a ratio of shares. Shares that were rounded to 0 count as the smallest positive number.
+fn log_ratio(other: f64, own: f64) -> f64 {
+    (other.max(f64::MIN_POSITIVE) / own.max(f64::MIN_POSITIVE)).ln()
+}
+
+fn lines(said: &[Said]) -> Vec<String> {
+    let best: Vec<&Best> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+    let right = best.iter().filter(|best| best.is_right).count();
+    let error = |share: fn(&Best) -> f64| {
+        calibration_error(&best.iter().map(|best| (share(best), best.is_right)).collect::<Vec<_>>())
+    };
+    let turns: Vec<[f64; 2]> = said.iter().filter_map(|said| said.turns).collect();
+    let paths: Vec<[f64; 2]> = said.iter().filter_map(|said| Some([said.elsewhere, said.other_path?])).collect();
+    let told = |name: &str, pairs: &[[f64; 2]]| match auc(pairs) {
+        Some(auc) => format!("{name}: AUC {auc:.3} ({} texts)", pairs.len()),
+        None => format!("{name}: no such text"),
+    };
+    let mut lines = vec![
+        format!("{} texts; the best walk ends at the goal for {right}", said.len()),
+        format!("calibration error, {BINS} bins: {:.3} of the share of that walk,", error(|best| best.share)),
+        format!(
+            "    {:.3} of the share of all walks that end within {SUCCESS_M} m of its end",
+            error(|best| best.nearby)
+        ),
+        told("one turn flipped", &turns),
+        told("another path's text", &paths),
+    ];
+    lines.push(table(&ambiguous(said)));
+    lines
+}
+
+/// How often texts are called ambiguous at several bounds.
+fn ambiguous(said: &[Said]) -> Vec<Vec<String>> {
+    let head = [
+        "another end fits",
+        "as well as the annotated one: all",
+        "as well as the best: reader wrong",
+        "reader right",
+        "reader is right of these",
+    ];
+    let percent = |count: usize, of: usize| format!("{:.1} %", 100.0 * count as f64 / of.max(1) as f64);
+    let best: Vec<&Best> = said.iter().filter_map(|said| said.best.as_ref()).collect();
+    let all_right = best.iter().filter(|best| best.is_right).count();
+    let row = |bound: f64| {
+        let near_own = said.iter().filter(|said| said.elsewhere >= bound.ln()).count();
+        let near_best = best.iter().filter(|best| best.runner_up >= bound.ln());
+        let (right, wrong): (Vec<&Best>, Vec<&Best>) = near_best.copied().partition(|best| best.is_right);
+        vec![
+            format!("{bound:.2}"),
+            percent(near_own, said.len()),
+            percent(wrong.len(), best.len() - all_right),
+            percent(right.len(), all_right),
+            percent(right.len(), right.len() + wrong.len()),
+        ]
+    };
+    let head = head.map(str::to_owned).to_vec();
+    std::iter::once(head).chain(BOUNDS.map(row)).collect()
+}
+
+/// The expected calibration error: in each bin, the difference between the mean share and the rate of right cases, averaged over bins
+/// by their numbers of cases.
+fn calibration_error(cases: &[(f64, bool)]) -> f64 {
+    let mut bins = [(0.0, 0.0); BINS];
+    for (share, is_right) in cases {
+        let bin = ((share * BINS as f64) as usize).min(BINS - 1);
+        bins[bin].0 += share;
+        bins[bin].1 += f64::from(u8::from(*is_right));
+    }
+    bins.iter().map(|(shares, right)| (shares - right).abs()).sum::<f64>() / cases.len().max(1) as f64
+}
+
+/// How often the second of a pair (of a wrong text) is higher than the first of any pair (of a right one); a tie counts
+/// half. `None` without pairs.
+fn auc(pairs: &[[f64; 2]]) -> Option<f64> {
+    let mut values: Vec<(f64, bool)> =
+        pairs.iter().flat_map(|[right, wrong]| [(*right, false), (*wrong, true)]).collect();
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut below, mut wins) = (0.0, 0.0);
+    for tied in values.chunk_by(|a, b| a.0 == b.0) {
+        let wrong = tied.iter().filter(|(_, is_wrong)| *is_wrong).count() as f64;
+        let right = tied.len() as f64 - wrong;
+        wins += wrong * (below + right / 2.0);
+        below += right;
+    }
+    (!pairs.is_empty()).then(|| wins / (pairs.len() * pairs.len()) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn auc_is_one_where_every_wrong_text_is_above_every_right_one() {
+        assert_eq!(auc(&[[0.0, 2.0], [1.0, 3.0]]), Some(1.0));
+        assert_eq!(auc(&[[2.0, 0.0], [3.0, 1.0]]), Some(0.0));
+        assert_eq!(auc(&[[1.0, 1.0], [1.0, 1.0]]), Some(0.5));
+        assert_eq!(auc(&[[0.0, 1.0], [1.0, 2.0]]), Some(0.875));
+        assert_eq!(auc(&[]), None);
+    }
+
+    #[test]
+    fn calibration_error_is_zero_for_shares_that_equal_their_hit_rate() {
+        let half = |share: f64| [(share, true), (share, false)];
+        assert!(calibration_error(&half(0.5)).abs() < 1e-12);
+        assert!((calibration_error(&half(1.0)) - 0.5).abs() < 1e-12, "a share of 1 is in the last bin");
+        assert_eq!(calibration_error(&[]), 0.0);
+    }
+}

@@ -1,0 +1,72 @@
+//! Shows instructions that a seed picks from a run, each with a person's text about the same path.
+
+use rand::seq::IndexedRandom;
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::rng;
+use wayword_formats::jsonl::{self, Record};
+use wayword_run::{
+    error::Error,
+    output::Output,
+    run_folder::{WalkRecord, file, read_lines},
+};
+
+pub fn show(run: &Path, count: usize, seed: u64, output: &Output) -> Result<(), Error> {
+    let walks: Vec<WalkRecord> = read_lines(&run.join(file::WALKS))?;
+    let originals = walks.into_iter().map(|walk| (walk.path.id, walk.originals)).collect();
+    let records = jsonl::read(&run.join(file::INSTRUCTIONS))?;
+    output.data(&(), lines(records, &originals, count, seed).join("\n"));
+    Ok(())
+}
+
+/// People's texts about each path, by the path's id.
+type Originals = BTreeMap<String, Vec<String>>;
+
+fn lines(records: Vec<Record>, originals: &Originals, count: usize, seed: u64) -> Vec<String> {
+    let mut styles: BTreeMap<String, Vec<Record>> = BTreeMap::new();
+    for record in records {
+        styles.entry(record.instruction.style.clone()).or_default().push(record);
+    }
+    let mut lines = Vec::new();
+    for (style, records) in &styles {
+        lines.push(format!("{style}:"));
+        for record in records.choose_multiple(&mut rng(seed, &["sample", style]), count) {
+            lines.push(format!("- {} | {}", record.path.id, record.instruction.text));
+            let people = originals.get(&record.path.id).and_then(|texts| texts.first());
+            lines.extend(people.map(|text| format!("    human: {text}")));
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up::{instruction, record};
+    use std::collections::BTreeSet;
+
+    fn made(count: usize) -> Vec<Record> {
+        (0..count)
+            .map(|number| record(&format!("p{number}"), instruction("r2r", &format!("Text {number}."), &[])))
+            .collect()
+    }
+
+    #[test]
+    fn lines_pick_count_different_instructions_each_with_the_first_human_text() {
+        let said = |number: usize| (format!("p{number}"), vec![format!("People {number}."), "Others.".to_owned()]);
+        let originals: Originals = (0..9).map(said).collect();
+        let picked = lines(made(9), &originals, 4, 0);
+        assert_eq!(picked[0], "r2r:");
+        assert_eq!(picked.len(), 1 + 2 * 4);
+        for pair in picked[1..].chunks(2) {
+            let number = pair[0].strip_prefix("- p").unwrap().chars().next().unwrap();
+            assert_eq!(pair, [format!("- p{number} | Text {number}."), format!("    human: People {number}.")]);
+        }
+        assert_eq!(picked[1..].iter().collect::<BTreeSet<_>>().len(), 8, "none twice: {picked:?}");
+        assert_eq!(lines(made(9), &originals, 4, 0), picked, "the same seed picks the same");
+    }
+
+    #[test]
+    fn where_there_are_fewer_all_are_shown() {
+        assert_eq!(lines(made(2), &Originals::new(), 10, 0).len(), 1 + 2);
+    }
+}

@@ -1,0 +1,31 @@
+//! Replays the walks of an export of steps, and counts those that end elsewhere and pictures that differ.
+
+use std::path::PathBuf;
+use wayword_report::export::replayed;
+use wayword_run::{error::Error, output::Output};
+
+/// The flags of `steps`.
+#[derive(Debug, clap::Args)]
+pub struct Flags {
+    /// Folder that `wayword export --format steps` wrote.
+    #[arg(long, value_name = "DIR")]
+    steps: PathBuf,
+    /// The run that was exported.
+    #[arg(long, value_name = "DIR")]
+    run: PathBuf,
+    /// Take every n-th picture of a walk.
+    #[arg(long, default_value_t = 1)]
+    every: usize,
+}
+
+pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let told = replayed(&flags.steps, &flags.run, flags.every)?;
+    output.data(
+        &told,
+        format_args!(
+            "{} walks, {} astray, the farthest ends {:.2} m from its walk's end; {} pictures, {} others than those of their poses",
+            told.walks, told.astray, told.farthest_off_m, told.pictures, told.others
+        ),
+    );
+    Ok(())
+}

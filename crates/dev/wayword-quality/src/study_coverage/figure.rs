@@ -1,0 +1,96 @@
+//! The figures of a study that are simulated: their true values, and the intervals that one simulated study gives.
+
+use super::assigned::{Design, Effects, assigned};
+use super::{choices, ratings, walks};
+use rand::Rng;
+use serde::Serialize;
+use std::fmt;
+use wayword_metrics::{Interval, mean, mean_difference, share, share_difference};
+
+/// The share that an interval should cover.
+pub(super) const LEVEL: f64 = 0.95;
+
+/// A figure of a study. Shares and means have a base: the share of success in the first condition.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Figure {
+    /// A share.
+    Share(f64),
+    /// The difference between two shares.
+    ShareDifference(f64),
+    /// A mean of values like SPL: 0 without success, else up to 1.
+    Mean(f64),
+    /// The difference between two means of this kind.
+    MeanDifference(f64),
+    /// Agreement on five levels.
+    Alpha,
+    /// The strengths of three systems.
+    Strengths,
+}
+
+impl Figure {
+    pub(super) const ALL: [Self; 10] = [
+        Self::Share(0.5),
+        Self::Share(0.8),
+        Self::ShareDifference(0.5),
+        Self::ShareDifference(0.8),
+        Self::Mean(0.5),
+        Self::Mean(0.8),
+        Self::MeanDifference(0.5),
+        Self::MeanDifference(0.8),
+        Self::Alpha,
+        Self::Strengths,
+    ];
+
+    /// The true values that the intervals should cover: one, or three for three systems.
+    pub(super) fn truth(self, effects: Effects) -> Vec<f64> {
+        let sd = effects.sd();
+        let between = |[first, second]: [f64; 2]| first - second;
+        match self {
+            Self::Share(base) => vec![base],
+            Self::ShareDifference(base) => vec![between(walks::shares(base, sd))],
+            Self::Mean(base) => vec![walks::means(base, sd)[0]],
+            Self::MeanDifference(base) => vec![between(walks::means(base, sd))],
+            Self::Alpha => vec![ratings::alpha(sd)],
+            Self::Strengths => choices::strengths(sd),
+        }
+    }
+
+    /// The intervals that one simulated study gives, in the order of the truth; none where it gives none.
+    pub(super) fn intervals(self, design: Design, effects: Effects, rng: &mut impl Rng) -> Vec<Interval> {
+        let (slots, sd) = (assigned(design, rng), effects.sd());
+        let all = |slots: &[_], base, rng: &mut _| walks::drawn(slots, base, sd, rng);
+        let interval = match self {
+            Self::Share(base) => {
+                share(&all(&walks::of_one(&slots), base, rng).successes[0], LEVEL).and_then(|of| of.interval)
+            }
+            Self::Mean(base) => {
+                mean(&all(&walks::of_one(&slots), base, rng).values[0], LEVEL).and_then(|of| of.interval)
+            }
+            Self::ShareDifference(base) => {
+                let [first, second] = all(&slots, base, rng).successes;
+                share_difference(&first, &second, LEVEL).and_then(|of| of.interval)
+            }
+            Self::MeanDifference(base) => {
+                let [first, second] = all(&slots, base, rng).values;
+                mean_difference(&first, &second, LEVEL).and_then(|of| of.interval)
+            }
+            Self::Alpha => ratings::interval(&slots, sd, rng),
+            Self::Strengths => return choices::intervals(&slots, sd, rng),
+        };
+        interval.into_iter().collect()
+    }
+}
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Share(base) => write!(f, "share, {base}"),
+            Self::ShareDifference(base) => write!(f, "difference of shares, {base}"),
+            Self::Mean(base) => write!(f, "mean, {base}"),
+            Self::MeanDifference(base) => write!(f, "difference of means, {base}"),
+            Self::Alpha => write!(f, "Krippendorff's alpha"),
+            Self::Strengths => write!(f, "Bradley-Terry strengths"),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Simulates studies with known truth, and counts how often the 95 % intervals of their figures cover it. An interval is honest if that is
+//! close to 95 %.
+
+mod assigned;
+mod choices;
+mod figure;
+mod logits;
+mod ratings;
+mod tried;
+mod walks;
+
+use crate::share::table;
+use clap::Args;
+use wayword_run::{error::Error, output::Output};
+
+/// The flags of `study-coverage`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A column is a number of people, how many of 60 items each answers, and how much people and items differ on the logit scale:
+none, middle (standard deviation 0.75 each), large (1.5). Two conditions have half of the answers each, and half of what
+people and items do to one of them they do to both. The truth is that of all people and items. A cell is the percentage of 95 % intervals that
+cover it; in brackets the percentage of studies that give an interval, where that is not all.")]
+pub struct Flags {
+    /// Simulated studies of each figure in each column.
+    #[arg(long, default_value_t = 2000, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    studies: u64,
+    /// Seed of the studies.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let cells = tried::all(flags.studies, flags.seed);
+    output.data(&cells, table(&tried::rows(&cells)));
+    Ok(())
+}

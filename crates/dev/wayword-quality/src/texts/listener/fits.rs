@@ -1,0 +1,300 @@
+//! Finds the objects of a building that a description fits. Each statement narrows the set of objects; one that fits none is skipped.
+
+use super::{
+    said::{How, Landmark, Level, Rank, Relation, Said, Side},
+    scene::Scene,
+};
+use std::{collections::BTreeSet, f64::consts::PI};
+use wayword_core::{DVec3, Heading};
+
+/// Objects that a text relates are this near to each other, metres.
+pub(super) const NEAR_M: f64 = 1.5;
+/// The geometry denies a relation between objects that are farther from each other than this, metres.
+pub(super) const FAR_M: f64 = 3.0;
+/// A room is near within this, metres.
+pub(super) const NEAR_ROOM_M: f64 = 3.0;
+/// An object is above another if it is at least this much higher, metres.
+pub(super) const ABOVE_M: f64 = 0.15;
+/// Things between two others are this near to the line, metres.
+pub(super) const BETWEEN_M: f64 = 0.8;
+/// Angles within this of ahead are on neither side, radians.
+pub(super) const AHEAD_RAD: f64 = 0.26;
+/// Angles (radians), distances and heights (metres) that differ by less than this do not deny a rank.
+pub(super) const SLACK_RAD: f64 = 0.15;
+pub(super) const SLACK_M: f64 = 0.5;
+pub(super) const SLACK_HEIGHT_M: f64 = 0.25;
+
+/// The end of a walk: the viewpoint, the position of the eye, the heading on arrival, the storey of the start and the highest storey.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arrival {
+    pub(super) at: usize,
+    pub(super) eye: DVec3,
+    pub(super) heading: Heading,
+    pub(super) start_level: Option<u32>,
+    pub(super) top_level: Option<u32>,
+}
+
+/// A listener at the end of a walk, who compares a description with the objects of a building.
+pub(super) struct Listener<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) said: &'a Said,
+    pub(super) arrival: Arrival,
+}
+
+/// The objects that still fit, and the number of statements that were skipped because no object fits them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Left {
+    pub(super) objects: BTreeSet<usize>,
+    pub(super) left_out: usize,
+}
+
+impl Left {
+    /// Keeps the objects that a statement fits. Keeps all where it fits none, because labels cannot confirm the statement then.
+    pub(super) fn narrowed(self, fits: impl Fn(usize, &BTreeSet<usize>) -> bool) -> Self {
+        let kept: BTreeSet<usize> =
+            self.objects.iter().copied().filter(|object| fits(*object, &self.objects)).collect();
+        if kept.is_empty() { Self { left_out: self.left_out + 1, ..self } } else { Self { objects: kept, ..self } }
+    }
+}
+
+impl Listener<'_> {
+    /// The objects that fit the whole description, as far as labels can confirm it.
+    pub(super) fn fitting(&self) -> Left {
+        let mut left = self.placed();
+        if !self.said.ranks.is_empty() {
+            let has_all = |object: usize, among: &BTreeSet<usize>| {
+                let seen = among.iter().copied().filter(|object| self.is_in_view(*object)).collect();
+                let mut ranks = self.said.ranks.iter();
+                self.is_in_view(object) && ranks.all(|rank| self.has_rank(object, *rank, &seen, false))
+            };
+            left = left.narrowed(has_all);
+        }
+        let Some(side) = self.said.side else { return left };
+        left.narrowed(|object, among| self.on_side(among, side).contains(&object))
+    }
+
+    /// The objects that fit the name, the level and the room.
+    pub(super) fn housed(&self) -> Left {
+        let left = Left { objects: self.scene.called(&self.said.name).collect(), left_out: 0 };
+        let left = left.narrowed(|object, _| self.fits_level(object));
+        let Some(said) = &self.said.room else { return left };
+        let rooms = |object: usize| &self.scene.objects[object].rooms;
+        let mut left = left;
+        if !said.name.is_empty() {
+            let kinds = self.scene.rooms_called(&said.name);
+            left = left.narrowed(|object, _| !rooms(object).is_disjoint(&kinds));
+        }
+        for thing in &said.things {
+            left = left.narrowed(|object, _| rooms(object).iter().any(|room| self.has(*room, thing)));
+        }
+        for name in &said.beside {
+            let kinds = self.scene.rooms_called(name);
+            let is_beside = |room: &usize| !kinds.is_disjoint(&self.scene.rooms[*room].beside);
+            left = left.narrowed(|object, _| rooms(object).iter().any(is_beside));
+        }
+        left
+    }
+
+    /// Whether a room has a thing.
+    pub(super) fn has(&self, room: usize, thing: &str) -> bool {
+        self.scene.called(thing).any(|object| self.scene.objects[object].rooms.contains(&room))
+    }
+
+    /// The objects that fit the relations too. A relation after the first may belong to the thing before it: in "the vase on the table by
+    /// the window" the table is by the window.
+    pub(super) fn placed(&self) -> Left {
+        let mut left = self.housed();
+        for at in 0..self.said.relations.len() {
+            left = if self.is_unknown(&self.said.relations[at]) {
+                Left { left_out: left.left_out + 1, ..left }
+            } else {
+                left.narrowed(|object, among| self.relates(object, at, among))
+            };
+        }
+        left
+    }
+
+    pub(super) fn relates(&self, object: usize, at: usize, namesakes: &BTreeSet<usize>) -> bool {
+        let relation = &self.said.relations[at];
+        let place = self.scene.objects[object].position;
+        let before = self.said.relations[..at].iter().flat_map(|relation| &relation.to).filter(|to| !to.is_room);
+        let near = |other: &usize| self.scene.objects[*other].position.distance(place) <= NEAR_M;
+        let mut holders = before.flat_map(|to| self.scene.called(&to.name)).filter(near);
+        self.holds(object, relation, namesakes) || holders.any(|holder| self.holds(holder, relation, &BTreeSet::new()))
+    }
+
+    /// Whether labels cannot judge a relation, or the building does not list one of its landmarks.
+    pub(super) fn is_unknown(&self, relation: &Relation) -> bool {
+        let lists = |landmark: &Landmark| !self.spots(landmark, None).is_empty();
+        relation.how == How::Unknown || !relation.to.iter().all(lists)
+    }
+
+    pub(super) fn fits_level(&self, object: usize) -> bool {
+        let (Some(said), Some(level)) = (self.said.level, self.scene.objects[object].level) else { return true };
+        let than_start = |fits: &dyn Fn(u32) -> bool| self.arrival.start_level.is_none_or(fits);
+        match said {
+            Level::Number(number) => level == number,
+            Level::Up => than_start(&|start| level > start),
+            Level::Down => than_start(&|start| level < start),
+            Level::Same => than_start(&|start| level == start),
+            Level::Top => self.arrival.top_level.is_none_or(|top| level == top),
+        }
+    }
+
+    /// The positions of a landmark's objects except one, or the viewpoints of its rooms.
+    pub(super) fn spots(&self, landmark: &Landmark, but: Option<usize>) -> Vec<DVec3> {
+        if landmark.is_room {
+            let rooms = self.scene.rooms_called(&landmark.name).into_iter();
+            return rooms
+                .flat_map(|room| &self.scene.rooms[room].viewpoints)
+                .map(|at| self.scene.viewpoints[*at])
+                .collect();
+        }
+        let called = self.scene.called(&landmark.name).filter(|object| Some(*object) != but);
+        called.map(|object| self.scene.objects[object].position).collect()
+    }
+
+    pub(super) fn holds(&self, object: usize, relation: &Relation, namesakes: &BTreeSet<usize>) -> bool {
+        let place = self.scene.objects[object].position;
+        let spots = self.spots(&relation.to[0], Some(object));
+        let near_m = if relation.to[0].is_room { NEAR_ROOM_M } else { NEAR_M };
+        let near = |spot: &DVec3| spot.distance(place) <= near_m;
+        let flat = |spot: &DVec3| (*spot - place).truncate().length();
+        match relation.how {
+            How::Unknown => true,
+            How::Near => spots.iter().any(near),
+            How::Closest => {
+                spots.iter().filter(|spot| near(spot)).any(|spot| self.is_nearest(object, *spot, namesakes, 0.0))
+            }
+            How::Farthest => self.is_farthest(object, &spots, namesakes, 0.0),
+            How::Above => spots.iter().any(|spot| flat(spot) <= near_m && place.z - spot.z > ABOVE_M),
+            How::Under => spots.iter().any(|spot| flat(spot) <= near_m && spot.z - place.z > ABOVE_M),
+            How::On => spots.iter().any(|spot| flat(spot) <= near_m),
+            How::LeftOf => spots.iter().any(|spot| near(spot) && self.turn_from(*spot, place) < 0.0),
+            How::RightOf => spots.iter().any(|spot| near(spot) && self.turn_from(*spot, place) > 0.0),
+            How::Between => {
+                let others = relation.to.get(1).map(|to| self.spots(to, Some(object))).unwrap_or_default();
+                spots.iter().any(|a| others.iter().any(|b| is_between(place, *a, *b, BETWEEN_M)))
+            }
+        }
+    }
+
+    /// The positions of an object's namesakes in the same room.
+    pub(super) fn rivals<'s>(
+        &'s self,
+        object: usize,
+        namesakes: &'s BTreeSet<usize>,
+    ) -> impl Iterator<Item = DVec3> + 's {
+        let rooms = &self.scene.objects[object].rooms;
+        let in_room = move |other: &&usize| **other != object && !self.scene.objects[**other].rooms.is_disjoint(rooms);
+        namesakes.iter().filter(in_room).map(|other| self.scene.objects[*other].position)
+    }
+
+    pub(super) fn is_nearest(&self, object: usize, spot: DVec3, namesakes: &BTreeSet<usize>, slack_m: f64) -> bool {
+        let own_m = self.scene.objects[object].position.distance(spot);
+        self.rivals(object, namesakes).all(|other| other.distance(spot) > own_m - slack_m)
+    }
+
+    pub(super) fn is_farthest(
+        &self,
+        object: usize,
+        spots: &[DVec3],
+        namesakes: &BTreeSet<usize>,
+        slack_m: f64,
+    ) -> bool {
+        let off = |place: DVec3| spots.iter().map(|spot| spot.distance(place)).fold(f64::INFINITY, f64::min);
+        let own_m = off(self.scene.objects[object].position);
+        self.rivals(object, namesakes).all(|other| off(other) < own_m + slack_m)
+    }
+
+    /// The turn from one spot to another, seen from the end of the walk, radians, positive to the right.
+    pub(super) fn turn_from(&self, spot: DVec3, to: DVec3) -> f64 {
+        let towards = |place| Heading::towards(self.arrival.eye, place);
+        towards(spot).zip(towards(to)).map_or(0.0, |(from, to)| from.turn_to(to))
+    }
+
+    /// The turn from the heading on arrival to an object, radians, positive to the right.
+    pub(super) fn turn(&self, object: usize) -> f64 {
+        let towards = Heading::towards(self.arrival.eye, self.scene.objects[object].position);
+        towards.map_or(0.0, |towards| self.arrival.heading.turn_to(towards))
+    }
+
+    pub(super) fn is_in_view(&self, object: usize) -> bool {
+        self.scene.objects[object].seen_from.contains(&self.arrival.at)
+    }
+
+    /// The other objects in view at the end that have a name in common with the target.
+    pub(super) fn namesakes_in_view(&self, target: usize) -> BTreeSet<usize> {
+        let kinds = &self.scene.objects[target].kinds;
+        let alike = |other: &usize| *other != target && self.scene.objects[*other].is_called(kinds);
+        (0..self.scene.objects.len()).filter(alike).filter(|other| self.is_in_view(*other)).collect()
+    }
+
+    /// The objects on a side. "On the left" may mean the leftmost of several.
+    pub(super) fn on_side(&self, objects: &BTreeSet<usize>, side: Side) -> BTreeSet<usize> {
+        let on = |object: &usize| {
+            let turn = self.turn(*object) * if side.is_left { -1.0 } else { 1.0 };
+            self.is_in_view(*object) && (AHEAD_RAD..PI - AHEAD_RAD).contains(&turn)
+        };
+        let there: BTreeSet<usize> = objects.iter().copied().filter(on).collect();
+        if side.is_yours || there.len() == 1 {
+            return there;
+        }
+        let seen: BTreeSet<usize> = objects.iter().copied().filter(|object| self.is_in_view(*object)).collect();
+        let rank = if side.is_left { Rank::Leftmost } else { Rank::Rightmost };
+        seen.iter().copied().filter(|object| self.has_rank(*object, rank, &seen, false)).collect()
+    }
+
+    /// Whether an object has a rank among others. With `slack` only a clear violation counts.
+    pub(super) fn has_rank(&self, object: usize, rank: Rank, among: &BTreeSet<usize>, slack: bool) -> bool {
+        let slack_of = |amount: f64| if slack { amount } else { 0.0 };
+        let middle = self.middle(among);
+        let bearing = |object: usize| middle.turn_to(self.heading_to(object));
+        let range_m = |object: usize| (self.scene.objects[object].position - self.arrival.eye).length();
+        let height_m = |object: usize| self.scene.objects[object].position.z;
+        let first = |value: &dyn Fn(usize) -> f64, slack: f64| {
+            among.iter().filter(|other| **other != object).all(|other| value(*other) > value(object) - slack)
+        };
+        let mut in_order: Vec<usize> = among.iter().copied().collect();
+        in_order.sort_by(|a, b| bearing(*a).total_cmp(&bearing(*b)));
+        let at = in_order.iter().position(|other| *other == object).unwrap_or(usize::MAX);
+        match rank {
+            Rank::Leftmost => first(&bearing, slack_of(SLACK_RAD)),
+            Rank::Rightmost => first(&|other| -bearing(other), slack_of(SLACK_RAD)),
+            Rank::Nearest => first(&range_m, slack_of(SLACK_M)),
+            Rank::Farthest => first(&|other| -range_m(other), slack_of(SLACK_M)),
+            Rank::Highest => first(&|other| -height_m(other), slack_of(SLACK_HEIGHT_M)),
+            Rank::Lowest => first(&height_m, slack_of(SLACK_HEIGHT_M)),
+            Rank::Middle => {
+                let is_inner = at > 0 && at + 1 < in_order.len();
+                if slack {
+                    is_inner || in_order.len() < 3
+                } else {
+                    in_order.len() % 2 == 1 && in_order.len() > 1 && at == in_order.len() / 2
+                }
+            }
+            Rank::FromLeft(number) => at == number || slack && at.abs_diff(number) <= 1,
+            Rank::FromRight(number) => {
+                at + number + 1 == in_order.len() || slack && (at + number + 1).abs_diff(in_order.len()) <= 1
+            }
+        }
+    }
+
+    pub(super) fn heading_to(&self, object: usize) -> Heading {
+        Heading::towards(self.arrival.eye, self.scene.objects[object].position).unwrap_or(self.arrival.heading)
+    }
+
+    /// The direction of the middle of some objects.
+    pub(super) fn middle(&self, objects: &BTreeSet<usize>) -> Heading {
+        let sum =
+            objects.iter().map(|object| self.heading_to(*object).direction()).fold(DVec3::ZERO, |sum, one| sum + one);
+        Heading::towards(DVec3::ZERO, sum).unwrap_or(self.arrival.heading)
+    }
+}
+
+/// Whether a place lies near the line between two spots, and between them.
+pub(super) fn is_between(place: DVec3, a: DVec3, b: DVec3, off_m: f64) -> bool {
+    let along = b - a;
+    let share = (place - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
+    (0.05..0.95).contains(&share) && along.length() <= 2.0 * FAR_M && (a + along * share).distance(place) <= off_m
+}

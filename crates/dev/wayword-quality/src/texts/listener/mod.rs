@@ -1,0 +1,145 @@
+//! Checks whether a text pins its target down, as a listener would who knows the labels of a building: it reads the description of the
+//! target and looks for the objects that fit it. A good text fits only the target.
+//!
+//! The listener's grammar and geometry are independent of the writer's, so that errors of one are not hidden by the other.
+
+mod clauses;
+mod denial;
+mod fits;
+mod phrases;
+mod said;
+mod scene;
+mod vocabulary;
+
+use super::row::{Row, share};
+use fits::{Arrival, Listener};
+use scene::Scene;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use wayword_core::{Platform, SceneId, Survey};
+use wayword_formats::Episode;
+use wayword_run::error::Error;
+use wayword_world::path_of;
+
+/// The listener's result for one text.
+#[derive(Debug, Clone, Default, Serialize)]
+pub(super) struct Heard {
+    pub(super) item: String,
+    pub(super) text: String,
+    /// Whether the text names the target.
+    is_named: bool,
+    /// How many objects fit the description.
+    fitting: usize,
+    /// Whether the target is among them.
+    fits_target: bool,
+    /// The part of the description that contradicts the target's geometry.
+    denied: Option<&'static str>,
+    /// Whether the description has words that labels cannot judge, such as a colour.
+    has_look: bool,
+    /// Whether another object with the target's name is in view at the end.
+    has_namesake: bool,
+    /// Whether the text has any word that could distinguish the target from its namesakes.
+    has_distinction: bool,
+    /// Whether a namesake in view fits as well.
+    fits_namesake: bool,
+}
+
+impl Heard {
+    /// Whether only the target fits, and its geometry contradicts no part of the description.
+    pub(super) fn is_pinned(&self) -> bool {
+        self.fits_target && self.fitting == 1 && self.denied.is_none()
+    }
+
+    /// Whether only another object fits, or the target's geometry contradicts the description.
+    fn is_false(&self) -> bool {
+        self.denied.is_some() || self.pins_another()
+    }
+
+    fn pins_another(&self) -> bool {
+        self.is_named && !self.fits_target && self.fitting == 1
+    }
+
+    /// The reason why the target is not pinned down, in words.
+    pub(super) fn fault(&self) -> String {
+        match self.denied {
+            Some(what) => format!("{what} denied"),
+            None if self.pins_another() => "another object fits".to_owned(),
+            None if !self.is_named => "the target is not named".to_owned(),
+            None if !self.has_distinction && self.has_namesake => {
+                format!("{} objects fit, no distinction", self.fitting)
+            }
+            None => format!("{} objects fit", self.fitting),
+        }
+    }
+}
+
+/// The listener's results for all texts of episodes that have a target and a path in one of the surveyed scenes.
+pub(super) fn hear(
+    platform: &dyn Platform,
+    surveys: &BTreeMap<SceneId, Survey>,
+    episodes: &[Episode],
+) -> Result<Vec<Heard>, Error> {
+    let mut by_scene: BTreeMap<&SceneId, Vec<&Episode>> = BTreeMap::new();
+    for episode in episodes.iter().filter(|episode| episode.target_object.is_some()) {
+        by_scene.entry(&episode.scene).or_default().push(episode);
+    }
+    let mut heard = Vec::new();
+    for (scene, episodes) in by_scene {
+        let Some(survey) = surveys.get(scene) else { continue };
+        let top_level = survey.viewpoints().iter().filter_map(|viewpoint| viewpoint.level).max();
+        let known = Scene::of(survey);
+        for episode in episodes {
+            let path = path_of(platform, &*episode.id, scene, &episode.viewpoints, episode.start_heading, None)?;
+            let target = known.objects.iter().position(|object| Some(&object.id) == episode.target_object.as_ref());
+            let last = path.frames.last();
+            let at = last.and_then(|frame| known.place(frame.viewpoint.as_ref()?.as_str()));
+            let (Some(target), Some(at), Some(last)) = (target, at, last) else { continue };
+            let start_level = path.frames.first().and_then(|frame| frame.level);
+            let arrival = Arrival { at, eye: last.pose.position, heading: last.pose.heading, start_level, top_level };
+            let of = |text: &String| Heard { item: episode.id.clone(), ..one(&known, arrival, target, text) };
+            heard.extend(episode.instructions.iter().map(of));
+        }
+    }
+    Ok(heard)
+}
+
+fn one(scene: &Scene, arrival: Arrival, target: usize, text: &str) -> Heard {
+    let mut heard = Heard { text: text.to_owned(), ..Heard::default() };
+    let said = said::said(text, &scene.names).unwrap_or_default();
+    let listener = Listener { scene, said: &said, arrival };
+    let namesakes = listener.namesakes_in_view(target);
+    heard.has_namesake = !namesakes.is_empty();
+    heard.is_named = scene.called(&said.name).any(|object| object == target);
+    if !heard.is_named {
+        return heard;
+    }
+    let left = listener.fitting();
+    let fitting = left.objects;
+    heard.fitting = fitting.len();
+    heard.fits_target = fitting.contains(&target);
+    heard.denied = listener.denial(target);
+    heard.has_look = said.has_look || left.left_out > 0;
+    heard.has_distinction =
+        heard.has_look || !said.relations.is_empty() || !said.ranks.is_empty() || said.side.is_some();
+    heard.fits_namesake = heard.fits_target && !fitting.is_disjoint(&namesakes);
+    heard
+}
+
+pub(super) fn rows(heard: &[Heard]) -> Vec<Row> {
+    let of_all = |name: &str, is: &dyn Fn(&Heard) -> bool| share(name, heard.iter().map(is));
+    let with_namesake =
+        |name: &str, is: &dyn Fn(&Heard) -> bool| share(name, heard.iter().filter(|heard| heard.has_namesake).map(is));
+    vec![
+        of_all("the target is named", &|heard| heard.is_named),
+        of_all("pinned down: it alone fits, by labels", &Heard::is_pinned),
+        of_all("pinned down, or with a word that labels cannot judge", &|heard| {
+            heard.is_pinned() || heard.has_look && heard.fits_target && heard.denied.is_none()
+        }),
+        of_all("falsely pinned", &Heard::is_false),
+        of_all("  the geometry denies what is said of it", &|heard| heard.denied.is_some()),
+        of_all("  another object alone fits", &|heard| heard.denied.is_none() && heard.pins_another()),
+        of_all("a namesake in view at the end", &|heard| heard.has_namesake),
+        with_namesake("  of these, no word tells them apart", &|heard| !heard.has_distinction),
+        with_namesake("  of these, the namesake fits too", &|heard| heard.fits_namesake && !heard.has_look),
+    ]
+}

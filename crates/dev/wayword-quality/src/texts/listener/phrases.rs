@@ -1,0 +1,235 @@
+//! Reads the words around a target's name: ranks, sides, relations to other things, and its room.
+
+use super::super::names::Named;
+use super::{
+    clauses::Text,
+    said::{How, InRoom, Landmark, Level, Rank, Relation, Said, Side},
+    vocabulary::{LOOKS, NUMBERS, OF_ROOMS, ORDINALS, RANKS, RELATIONS},
+};
+use wayword_language::lexicon::is_plural;
+
+/// The name of the other thing begins at most this many words after a relation.
+const GAP: usize = 5;
+
+impl Text {
+    /// Adds the ranks and looks in the words before the target's name.
+    pub(super) fn before(&self, target: usize, [from, _]: [usize; 2], said: &mut Said) {
+        let name = &self.names[target];
+        let first = name.start.saturating_sub(6).max(from);
+        let mut at = name.start;
+        while at > first
+            && !matches!(self.words[at - 1].as_str(), "the" | "a" | "an" | "me" | "your" | "that" | "off" | "up")
+        {
+            at -= 1;
+        }
+        for at in at..name.start {
+            let word = self.words[at].as_str();
+            // An ordinal that counts ("the second picture from the left") is a rank and no look.
+            said.has_look |= LOOKS.contains(&word) && !self.is_ordinal_from(target, at);
+            let rank = RANKS.iter().find(|(other, _)| *other == word).map(|(_, rank)| *rank);
+            // "The far left picture" is the leftmost.
+            let is_far_side = word == "far" && matches!(self.words[at + 1].as_str(), "left" | "right");
+            said.ranks.extend(rank.filter(|_| !is_far_side));
+            if let (Some(number), Some(from_left)) =
+                (ORDINALS.iter().position(|one| *one == word), self.counts_from(target))
+            {
+                said.ranks.push(if from_left { Rank::FromLeft(number) } else { Rank::FromRight(number) });
+            }
+        }
+    }
+
+    pub(super) fn is_ordinal_from(&self, target: usize, at: usize) -> bool {
+        ORDINALS.contains(&self.words[at].as_str()) && self.counts_from(target).is_some()
+    }
+
+    /// "From the left" after a name: whether it counts from the left, or from the right.
+    pub(super) fn counts_from(&self, target: usize) -> Option<bool> {
+        let after = self.words.get(self.names[target].end..)?;
+        let after: Vec<&str> = after.iter().take(4).map(String::as_str).collect();
+        let side =
+            after.windows(3).find(|run| run[0] == "from" && run[1] == "the" && matches!(run[2], "left" | "right"))?;
+        Some(side[2] == "left")
+    }
+
+    /// Adds the sides, ranks and relations in the words after the target's name, up to the end of its clause.
+    pub(super) fn after(&self, target: usize, [_, to]: [usize; 2], said: &mut Said) {
+        let mut at = self.names[target].end;
+        let mut holder_is_room = false;
+        while at < to {
+            if let Some((length, side)) = self.side_at(at, to).filter(|_| !holder_is_room) {
+                said.side = Some(side);
+                at += length;
+                continue;
+            }
+            let rank = self.rank_at(at, to).filter(|_| !holder_is_room);
+            if let Some(rank) = rank {
+                said.ranks.push(rank);
+                at += 2;
+                continue;
+            }
+            said.has_look |= !holder_is_room
+                && at < self.names[target].end + 4
+                && LOOKS.contains(&self.words[at].as_str())
+                && !self.is_ordinal_from(target, at);
+            let found = RELATIONS.iter().find(|(phrase, _)| self.stands_at(phrase, at, to));
+            let Some((phrase, how)) = found else {
+                at += 1;
+                continue;
+            };
+            let next = at + phrase.split(' ').count();
+            let Some((landmarks, end)) = self.landmarks(next, to, *how) else {
+                at = next;
+                continue;
+            };
+            let in_room = matches!(how, How::On) && landmarks[0].is_room;
+            if !holder_is_room && !in_room && !landmarks.is_empty() {
+                said.relations.push(Relation { how: *how, to: landmarks.clone() });
+            }
+            holder_is_room = holder_is_room || in_room;
+            at = end;
+        }
+    }
+
+    pub(super) fn stands_at(&self, phrase: &str, at: usize, to: usize) -> bool {
+        let length = phrase.split(' ').count();
+        at + length <= to && phrase.split(' ').eq(self.words[at..at + length].iter().map(String::as_str))
+    }
+
+    /// "On your left", "on the right side".
+    pub(super) fn side_at(&self, at: usize, to: usize) -> Option<(usize, Side)> {
+        let [first, second, side] =
+            [0, 1, 2].map(|next| self.words.get(at + next).filter(|_| at + next < to).map_or("", String::as_str));
+        let is_left = match side {
+            "left" | "lefthand" => true,
+            "right" | "righthand" => false,
+            _ => return None,
+        };
+        let is_of = (3..6).any(|next| self.words.get(at + next).is_some_and(|word| word == "of") && next < 5);
+        let is_side = matches!(first, "on" | "to" | "at") && matches!(second, "the" | "your") && !is_of;
+        is_side.then_some((3, Side { is_left, is_yours: second == "your" }))
+    }
+
+    /// "Closest to you", "in the middle", "on top".
+    pub(super) fn rank_at(&self, at: usize, to: usize) -> Option<Rank> {
+        let phrases = [
+            ("closest to you", Rank::Nearest),
+            ("nearest to you", Rank::Nearest),
+            ("nearest you", Rank::Nearest),
+            ("closest to me", Rank::Nearest),
+            ("furthest from you", Rank::Farthest),
+            ("farthest from you", Rank::Farthest),
+            ("furthest away", Rank::Farthest),
+            ("farthest away", Rank::Farthest),
+            ("in the middle", Rank::Middle),
+            ("in the center", Rank::Middle),
+        ];
+        let found = phrases.iter().find(|(phrase, _)| self.stands_at(phrase, at, to))?;
+        let is_of = self.words.get(at + 3).is_some_and(|word| word == "of" || word == "from");
+        (!is_of).then_some(found.1)
+    }
+
+    /// The things that follow a relation.
+    pub(super) fn landmarks(&self, from: usize, to: usize, how: How) -> Option<(Vec<Landmark>, usize)> {
+        let first = self.names.iter().position(|name| name.start >= from && name.start < (from + GAP).min(to))?;
+        let landmark = |name: &Named| Landmark { name: name.name.clone(), is_room: name.is_room && !name.is_thing };
+        let name = &self.names[first];
+        let mut landmarks = vec![landmark(name)];
+        let mut end = name.end;
+        if how == How::Between {
+            let second = self.names.get(first + 1).filter(|next| next.start < (name.end + GAP).min(to));
+            let joined = second.filter(|next| self.words[name.end..next.start].iter().any(|word| word == "and"));
+            let several = is_plural(&self.words[name.end - 1]);
+            match joined {
+                Some(next) => {
+                    landmarks.push(landmark(next));
+                    end = next.end;
+                }
+                None if several => landmarks.push(landmark(name)),
+                None => return None,
+            }
+        }
+        Some((landmarks, end))
+    }
+
+    /// The last room of a clause that is not just a landmark. In the target's own clause, it is the room of the target.
+    pub(super) fn room_in(&self, [from, to]: [usize; 2], target: Option<usize>) -> Option<InRoom> {
+        let mut found: Option<InRoom> = None;
+        for (at, name) in self.names.iter().enumerate() {
+            let is_room = name.is_room && Some(at) != target && name.start >= from && name.end <= to;
+            if !is_room {
+                continue;
+            }
+            let before: Vec<&str> =
+                self.words[from.max(name.start.saturating_sub(4))..name.start].iter().map(String::as_str).collect();
+            let after_target = target.is_none_or(|target| name.start > self.names[target].end || target > at);
+            let is_inside = |word: &&str| matches!(*word, "in" | "of" | "inside" | "from" | "on" | "at");
+            let is_landmark = OF_ROOMS
+                .iter()
+                .chain(&["closest to", "facing", "past", "through", "out of", "beyond", "after"])
+                .any(|phrase| {
+                    let run = format!(" {} ", before.join(" "));
+                    run.contains(&format!(" {phrase} ")) && !(target.is_some() && before.iter().any(is_inside))
+                });
+            if after_target
+                && (!is_landmark || found.is_none() && target.is_none())
+                && (target.is_none() || before.iter().any(is_inside) || target.is_some_and(|target| target > at))
+            {
+                let mut room = InRoom { name: name.room_word(), ..InRoom::default() };
+                self.of_room(at, to, target, &mut room);
+                found = Some(room);
+            }
+        }
+        found
+    }
+
+    /// Adds the things and the neighbouring rooms that describe a room ("the bathroom with two sinks").
+    pub(super) fn of_room(&self, room: usize, to: usize, target: Option<usize>, said: &mut InRoom) {
+        let mut end = self.names[room].end;
+        for (at, name) in self.names.iter().enumerate().skip(room + 1) {
+            let between = &self.words[end..name.start.max(end)];
+            let run = format!(" {} ", between.join(" "));
+            let is_told = OF_ROOMS.iter().any(|phrase| run.contains(&format!(" {phrase} ")));
+            if name.end > to || Some(at) == target || between.len() > GAP || !(is_told || run.contains(" and ")) {
+                break;
+            }
+            if name.is_floor() {
+                continue;
+            }
+            if name.is_room && !name.is_thing {
+                said.beside.push(name.room_word());
+            } else if name.is_thing {
+                said.things.push(name.name.clone());
+            }
+            end = name.end;
+        }
+    }
+
+    /// The level that the text ends on.
+    pub(super) fn level(&self) -> Option<Level> {
+        let number = |word: &str| {
+            let written = [&ORDINALS, &NUMBERS].into_iter().find_map(|list| list.iter().position(|one| *one == word));
+            let digits = word.trim_end_matches(char::is_alphabetic);
+            written.map(|at| at as u32 + 1).or_else(|| digits.parse().ok())
+        };
+        let mut level = None;
+        for at in 0..self.words.len() {
+            let word =
+                |step: isize| at.checked_add_signed(step).and_then(|at| self.words.get(at)).map_or("", String::as_str);
+            level = match word(0) {
+                "upstairs" => Some(Level::Up),
+                "downstairs" => Some(Level::Down),
+                "level" | "floor" | "story" | "storey" => match word(-1) {
+                    "this" | "same" => Some(Level::Same),
+                    "top" | "upper" | "highest" => Some(Level::Top),
+                    "ground" => Some(Level::Number(1)),
+                    before => number(before)
+                        .or_else(|| number(word(1)).filter(|_| word(0) == "level" || word(0) == "floor"))
+                        .map(Level::Number)
+                        .or(level),
+                },
+                _ => level,
+            };
+        }
+        level.filter(|level| !matches!(level, Level::Number(0 | 10..)))
+    }
+}

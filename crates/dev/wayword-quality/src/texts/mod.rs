@@ -1,0 +1,128 @@
+//! Measures generated texts, each figure next to that of people's texts. To be independent, it shares no code with the writer or the
+//! checks, except the names in the lexicon.
+
+mod clauses;
+mod copies;
+pub mod houses;
+mod listener;
+mod names;
+mod rooms;
+mod row;
+mod surface;
+
+use crate::share::table;
+use clap::Args;
+use copies::Train;
+use row::Row;
+use serde_json::json;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+use wayword_core::{Platform, SceneId, Survey};
+use wayword_formats::Episode;
+use wayword_run::{
+    error::Error,
+    output::Output,
+    platforms,
+    settings::{Asked, AskedPlatform},
+};
+use wayword_world::survey;
+
+/// The flags of `texts`.
+#[derive(Debug, Args)]
+pub struct Flags {
+    /// Generated texts: a dataset file of any format.
+    generated: PathBuf,
+    /// People's texts of the same items, for a second column.
+    #[arg(long)]
+    people: Option<PathBuf>,
+    /// Texts that the writer could have copied from. Runs of words and skeletons in common with them are counted.
+    #[arg(long)]
+    train: Option<PathBuf>,
+    /// Platform of the paths, to check by its labels whether a text pins its target down.
+    #[arg(long, requires = "data")]
+    platform: Option<String>,
+    /// Folder of the platform's data.
+    #[arg(long, requires = "platform")]
+    data: Option<PathBuf>,
+    /// Show this many generated texts that do not pin their target down, and why.
+    #[arg(long, default_value_t = 0)]
+    show: usize,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let generated = wayword_formats::read(&flags.generated)?;
+    let people = flags.people.as_deref().map(|file| of_items(file, &generated)).transpose()?;
+    let train = flags.train.as_deref().map(wayword_formats::read).transpose()?;
+    let train = train.map(|episodes| Train::of(&in_turn(&episodes)));
+    let platform = flags.platform.clone().map(|name| open(name, flags.data.clone())).transpose()?;
+    let mut sides: Vec<(&str, Vec<Row>)> = Vec::new();
+    for (name, episodes) in [("generated", Some(&generated)), ("people", people.as_ref())] {
+        let Some(episodes) = episodes else { continue };
+        let mut rows = rows(episodes, train.as_ref());
+        let surveys =
+            platform.as_deref().map_or_else(|| Ok(BTreeMap::new()), |platform| surveys(platform, episodes))?;
+        rows.extend(rooms::rows(episodes, &surveys));
+        if let Some(platform) = &platform {
+            let heard = listener::hear(platform.as_ref(), &surveys, episodes)?;
+            rows.extend(listener::rows(&heard));
+            let wrong = heard.iter().filter(|heard| name == "generated" && !heard.is_pinned()).take(flags.show);
+            wrong.for_each(|heard| output.say(format!("{}: {}: {}", heard.item, heard.fault(), heard.text)));
+        }
+        sides.push((name, rows));
+    }
+    let value = sides.iter().map(|(name, rows)| ((*name).to_owned(), json!(rows))).collect::<serde_json::Map<_, _>>();
+    output.data(&value, side_by_side(&sides));
+    Ok(())
+}
+
+fn open(platform: String, data: Option<PathBuf>) -> Result<Box<dyn Platform>, Error> {
+    let asked = AskedPlatform { platform: Some(platform), data, ..AskedPlatform::default() };
+    platforms::open(&Asked::from(asked).resolve()?)
+}
+
+/// The scenes of episodes, those that the platform has.
+fn surveys(platform: &dyn Platform, episodes: &[Episode]) -> Result<BTreeMap<SceneId, Survey>, Error> {
+    let there: BTreeSet<SceneId> = platform.scenes()?.into_iter().collect();
+    let scenes: BTreeSet<&SceneId> = episodes.iter().map(|episode| &episode.scene).collect();
+    let survey = |scene: &&SceneId| Ok(((*scene).clone(), survey(platform, scene)?));
+    scenes.iter().filter(|scene| there.contains(**scene)).map(survey).collect()
+}
+
+/// People's items that were generated too; all of them where there is none.
+fn of_items(file: &Path, generated: &[Episode]) -> Result<Vec<Episode>, Error> {
+    let ids: BTreeSet<&str> = generated.iter().map(|episode| episode.id.as_str()).collect();
+    let (same, others): (Vec<Episode>, Vec<Episode>) =
+        wayword_formats::read(file)?.into_iter().partition(|episode| ids.contains(episode.id.as_str()));
+    Ok(if same.is_empty() { others } else { same })
+}
+
+fn rows(episodes: &[Episode], train: Option<&Train>) -> Vec<Row> {
+    let texts = in_turn(episodes);
+    let mut rows = surface::rows(&texts);
+    rows.extend(copies::rows(&texts, train));
+    rows
+}
+
+/// The first text of each item, then the second ones, and so on.
+fn in_turn(episodes: &[Episode]) -> Vec<&str> {
+    let most = episodes.iter().map(|episode| episode.instructions.len()).max().unwrap_or(0);
+    let nth = |at: usize| episodes.iter().filter_map(move |episode| episode.instructions.get(at));
+    (0..most).flat_map(nth).map(String::as_str).collect()
+}
+
+fn side_by_side(sides: &[(&str, Vec<Row>)]) -> String {
+    let head = std::iter::once(String::new()).chain(sides.iter().map(|(name, _)| (*name).to_owned()));
+    let names = sides.first().map_or(&[][..], |(_, rows)| rows);
+    let line = |row: &Row| {
+        let of = |rows: &[Row]| {
+            rows.iter().find(|other| other.name == row.name).map_or("-".to_owned(), |row| row.value.cell())
+        };
+        std::iter::once(row.name.clone()).chain(sides.iter().map(|(_, rows)| of(rows))).collect()
+    };
+    table(&std::iter::once(head.collect()).chain(names.iter().map(line)).collect::<Vec<_>>())
+}

@@ -1,0 +1,124 @@
+//! Finds the objects and rooms that a text names. It uses only the names of the lexicon, and none of the reader's rules.
+
+use std::collections::BTreeSet;
+use wayword_language::lexicon::{Class, is_room, is_thing, longest_name, normal_word, thing};
+
+/// Words that begin a phrase that names something.
+const DETERMINERS: [&str; 36] = [
+    "the", "a", "an", "your", "this", "that", "another", "each", "any", "some", "its", "first", "second", "third",
+    "fourth", "last", "next", "one", "two", "three", "four", "five", "six", "of", "with", "by", "beside", "near",
+    "both", "past", "between", "above", "below", "under", "all", "nearest",
+];
+/// How many words before a name a determiner may be.
+const REACH: usize = 4;
+
+/// A room of any kind.
+const ANY_ROOM: &str = "room";
+
+/// A name in a text.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Named {
+    /// Its first word.
+    pub(super) start: usize,
+    /// The word after its last one.
+    pub(super) end: usize,
+    /// As the lexicon spells it.
+    pub(super) name: String,
+    pub(super) is_room: bool,
+    pub(super) is_thing: bool,
+}
+
+impl Named {
+    /// Whether it is a visible object: neither stairs, nor a door, nor a wall.
+    pub(super) fn is_object(&self) -> bool {
+        self.is_seen() && !matches!(self.class(), Some(Class::Stairs | Class::Door))
+    }
+
+    /// Whether it is visible and no room: an object, stairs or a door.
+    pub(super) fn is_seen(&self) -> bool {
+        let is_stairs = self.class() == Some(Class::Stairs);
+        self.is_thing && (is_stairs || !self.is_room) && !matches!(self.class(), Some(Class::Fabric) | None)
+    }
+
+    /// The name of a room; empty for "the room".
+    pub(super) fn room_word(&self) -> String {
+        if self.name == ANY_ROOM { String::new() } else { self.name.clone() }
+    }
+
+    /// Whether it is a wall, a floor, or another part of the building itself.
+    pub(super) fn is_floor(&self) -> bool {
+        self.class() == Some(Class::Fabric)
+    }
+
+    fn class(&self) -> Option<Class> {
+        thing(&self.name).map(|thing| thing.class)
+    }
+}
+
+/// The words of a text, without marks, in lower case.
+pub(super) fn words(text: &str) -> Vec<String> {
+    let words = text.split(|c: char| !c.is_alphanumeric() && c != '\'').filter(|word| !word.is_empty());
+    words.map(str::to_lowercase).collect()
+}
+
+/// The names among words: the longest at each place. A word that may be a verb is a name only after an article.
+pub(super) fn named(words: &[String]) -> Vec<Named> {
+    let mut found = all(words, &BTreeSet::new());
+    found.retain(|name| is_introduced(words, name));
+    found
+}
+
+/// The names among words, also those without an article. `known` adds names of things in normal spelling; "room" alone counts too.
+pub(super) fn named_with(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
+    all(words, known)
+}
+
+fn all(words: &[String], known: &BTreeSet<String>) -> Vec<Named> {
+    let normal: Vec<String> = words.iter().map(|word| normal_word(word)).collect();
+    let (mut found, mut at) = (Vec::new(), 0);
+    while at < words.len() {
+        let most = longest_name().max(3).min(words.len() - at);
+        let longest = (1..=most).rev().find_map(|length| {
+            let name = normal[at..at + length].join(" ");
+            let is_any_room = name == ANY_ROOM && !known.is_empty();
+            let (is_room, is_thing) = (is_room(&name) || is_any_room, is_thing(&name) || known.contains(&name));
+            (is_room || is_thing).then_some(Named { start: at, end: at + length, name, is_room, is_thing })
+        });
+        match longest {
+            Some(name) => {
+                at = name.end;
+                found.push(name);
+            }
+            None => at += 1,
+        }
+    }
+    found
+}
+
+fn is_introduced(words: &[String], name: &Named) -> bool {
+    let before = &words[name.start.saturating_sub(REACH)..name.start];
+    name.end - name.start > 1 || before.iter().any(|word| DETERMINERS.contains(&word.as_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(text: &str) -> Vec<(String, bool)> {
+        named(&words(text)).into_iter().map(|name| (name.name.clone(), name.is_object())).collect()
+    }
+
+    #[test]
+    fn the_longest_name_counts_and_stairs_are_no_object() {
+        let found = names("Walk past the Coffee Tables, up the stairs into the bedroom.");
+        assert_eq!(
+            found,
+            [("coffee table", true), ("stair", false), ("bedroom", false)].map(|(n, o)| (n.to_owned(), o))
+        );
+    }
+
+    #[test]
+    fn a_verb_is_no_name() {
+        assert!(names("stand still, light up").is_empty());
+    }
+}

@@ -1,0 +1,278 @@
+//! A bucket of an object store, and the operations on single objects: write, read, list, remove. All of them block.
+
+use super::{CloudError, address, names, trouble};
+use futures_util::{StreamExt, TryStreamExt};
+use object_store::{
+    GetResult, ObjectMeta, ObjectStore, ObjectStoreExt, PutMode, PutOptions, PutPayload, memory::InMemory, path::Path,
+};
+use std::{fmt, sync::Arc, time::Duration};
+use tokio::runtime::{Builder, Handle, Runtime};
+
+/// The most objects that are listed. A million names are about 200 MB.
+pub const MOST_OBJECTS: usize = 1_000_000;
+
+/// How often a write is tried again after a conflict with another write of the same object.
+const CONFLICTS: u32 = 5;
+
+/// The pause before it, multiplied by the number of conflicts so far.
+const CONFLICT: Duration = Duration::from_millis(50);
+
+/// An object of a list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// The name, below the bucket's prefix.
+    pub name: String,
+    /// How many bytes it has.
+    pub bytes: u64,
+    /// The ETag without quotes, if the store has one. It changes with the content.
+    pub version: Option<String>,
+}
+
+/// A bucket, or the part of it below a prefix. It can be used by several threads at the same time.
+pub struct Bucket {
+    pub(super) store: Arc<dyn ObjectStore>,
+    prefix: Path,
+    shown: String,
+    runtime: Runtime,
+}
+
+impl fmt::Debug for Bucket {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // The debug texts of the stores contain their settings, so they are left out.
+        f.debug_struct("Bucket").field("address", &self.shown).finish_non_exhaustive()
+    }
+}
+
+impl fmt::Display for Bucket {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.shown)
+    }
+}
+
+fn runtime() -> Result<Runtime, CloudError> {
+    Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .map_err(CloudError::local(".", "start the client of object stores"))
+}
+
+impl Bucket {
+    /// Opens a bucket: `s3://BUCKET/PREFIX`, `gs://BUCKET/PREFIX`, `az://CONTAINER/PREFIX`, `file:///FOLDER`, and the
+    /// `https://` addresses of Amazon, Cloudflare R2 and Azure. Sends no request to the store yet; a folder is made if it
+    /// does not exist.
+    ///
+    /// # Errors
+    /// When the address cannot be read or contains a user, a password, a port or a query; its text is not repeated. When a
+    /// variable of the provider cannot be used.
+    pub fn open(url: &str) -> Result<Self, CloudError> {
+        // The client needs a provider of cryptography. Where the program has chosen one, that one stays.
+        let _ = rustls::crypto::ring::default_provider().install_default();
+        let opened = address::open(url)?;
+        Ok(Self { store: opened.store, prefix: opened.prefix, shown: opened.shown, runtime: runtime()? })
+    }
+
+    /// A bucket in memory, for tests.
+    ///
+    /// # Errors
+    /// When the system has no room for a client.
+    pub fn in_memory() -> Result<Self, CloudError> {
+        let store = Arc::new(InMemory::new());
+        Ok(Self { store, prefix: Path::default(), shown: "memory:".to_owned(), runtime: runtime()? })
+    }
+
+    /// Waits for the store.
+    pub(super) fn wait<T>(&self, work: impl Future<Output = Result<T, CloudError>>) -> Result<T, CloudError> {
+        if Handle::try_current().is_ok() {
+            return Err(CloudError::InsideAsync);
+        }
+        self.runtime.block_on(work)
+    }
+
+    /// The address of an object, as it is shown.
+    pub(super) fn shown(&self, name: &str) -> String {
+        if name.is_empty() { self.shown.clone() } else { format!("{}/{}", self.shown, name.escape_debug()) }
+    }
+
+    pub(super) fn place(&self, name: &str) -> Result<Path, CloudError> {
+        names::check(name)?;
+        names::below(&self.prefix, name)
+    }
+
+    pub(super) fn trouble(&self, name: &str, doing: &'static str, error: &object_store::Error) -> CloudError {
+        match trouble::of(&self.shown(name), doing, error) {
+            CloudError::NoBucket { .. } => CloudError::NoBucket { bucket: self.shown.clone() },
+            other => other,
+        }
+    }
+
+    /// Makes an object if there is none of that name, and returns whether it did. Of several writers one wins, on the
+    /// stores that [the module](super) lists.
+    ///
+    /// If an answer gets lost, the client tries again and then finds its own object. So `false` can also mean that an
+    /// earlier try of the same caller made it. A caller that must know this reads the object.
+    ///
+    /// # Errors
+    /// When the store cannot be used, or has no put-if-absent ([`CloudError::NoPutNew`]).
+    pub fn put_new(&self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<bool, CloudError> {
+        let place = self.place(name)?;
+        let payload = PutPayload::from(bytes.into());
+        self.wait(async {
+            let mut conflicts = 0;
+            loop {
+                let options = PutOptions::from(PutMode::Create);
+                match self.store.put_opts(&place, payload.clone(), options).await {
+                    Ok(_) => return Ok(true),
+                    Err(error) if trouble::is_conflict(&error) && conflicts < CONFLICTS => {
+                        conflicts += 1;
+                        tokio::time::sleep(CONFLICT * conflicts).await;
+                    }
+                    Err(error) if trouble::is_conflict(&error) => {
+                        let problem = "others write the same object all the time".to_owned();
+                        return Err(CloudError::Network { at: self.shown(name), doing: "write it", problem });
+                    }
+                    Err(error @ object_store::Error::AlreadyExists { .. }) if !trouble::is_no_bucket(&error) => {
+                        return Ok(false);
+                    }
+                    Err(error) if trouble::is_not_implemented(&error) => {
+                        return Err(self.no_put_new("it says so"));
+                    }
+                    Err(error) => return Err(self.trouble(name, "write it", &error)),
+                }
+            }
+        })
+    }
+
+    fn no_put_new(&self, problem: &'static str) -> CloudError {
+        CloudError::NoPutNew { bucket: self.shown.clone(), problem }
+    }
+
+    /// Tests whether [`Bucket::put_new`] makes one writer win: writes one object twice and removes it again. A store that
+    /// ignores the condition accepts both writes.
+    ///
+    /// # Errors
+    /// [`CloudError::NoPutNew`], or when the store cannot be used.
+    pub fn check_put_new(&self) -> Result<(), CloudError> {
+        // Two programs that check at the same time must not use the same name.
+        let number = std::collections::hash_map::RandomState::new();
+        let name = format!(".wayword-check-{:016x}", std::hash::BuildHasher::hash_one(&number, std::process::id()));
+        self.put_new(&name, *b"1")?;
+        let second = self.put_new(&name, *b"2");
+        let removed = self.remove(&name);
+        if second? { Err(self.no_put_new("it took a second object of the same name")) } else { removed }
+    }
+
+    /// Writes an object, whether there is one of that name or not.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub fn put(&self, name: &str, bytes: impl Into<Vec<u8>>) -> Result<(), CloudError> {
+        let place = self.place(name)?;
+        let payload = PutPayload::from(bytes.into());
+        self.wait(async {
+            let put = self.store.put(&place, payload).await;
+            put.map(drop).map_err(|error| self.trouble(name, "write it", &error))
+        })
+    }
+
+    /// Reads an object of at most `most_bytes`; `None` if it does not exist.
+    ///
+    /// # Errors
+    /// When the store or the bucket is not there, or the object is larger.
+    pub fn get(&self, name: &str, most_bytes: u64) -> Result<Option<Vec<u8>>, CloudError> {
+        let place = self.place(name)?;
+        self.wait(async {
+            match self.store.get(&place).await {
+                Ok(found) => self.bytes_of(name, found, most_bytes).await.map(Some),
+                Err(error @ object_store::Error::NotFound { .. }) => match self.trouble(name, "read it", &error) {
+                    no_bucket @ CloudError::NoBucket { .. } => Err(no_bucket),
+                    _ => Ok(None),
+                },
+                Err(error) => Err(self.trouble(name, "read it", &error)),
+            }
+        })
+    }
+
+    async fn bytes_of(&self, name: &str, found: GetResult, most: u64) -> Result<Vec<u8>, CloudError> {
+        let too_large = |bytes| CloudError::TooLarge { at: self.shown(name), bytes, most };
+        if found.meta.size > most {
+            return Err(too_large(found.meta.size));
+        }
+        let mut bytes = Vec::new();
+        let mut pieces = found.into_stream();
+        while let Some(piece) = pieces.next().await {
+            let piece = piece.map_err(|error| self.trouble(name, "read it", &error))?;
+            bytes.extend_from_slice(&piece);
+            // A server can send more than it announced.
+            if bytes.len() as u64 > most {
+                return Err(too_large(bytes.len() as u64));
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// The objects below a prefix, in the order of their names. An empty prefix is all.
+    ///
+    /// # Errors
+    /// When the store cannot be used, or there are more than [`MOST_OBJECTS`]. A name that [`Bucket::get`] would refuse is
+    /// an error too: no object is left out silently.
+    pub fn list(&self, prefix: &str) -> Result<Vec<Entry>, CloudError> {
+        if !prefix.is_empty() {
+            names::check(prefix)?;
+        }
+        let place = names::below(&self.prefix, prefix)?;
+        self.wait(async {
+            let mut entries = Vec::new();
+            let mut found = self.store.list(Some(&place));
+            while let Some(about) = found.try_next().await.map_err(|error| self.listing(prefix, &error))? {
+                let Some(entry) = self.entry(&about)? else { continue };
+                if entries.len() == MOST_OBJECTS {
+                    return Err(CloudError::TooMany { at: self.shown(prefix), most: MOST_OBJECTS });
+                }
+                entries.push(entry);
+            }
+            entries.sort_by(|a: &Entry, b| a.name.cmp(&b.name));
+            Ok(entries)
+        })
+    }
+
+    fn listing(&self, prefix: &str, error: &object_store::Error) -> CloudError {
+        // The client refuses some hostile names before they get here.
+        if matches!(error, object_store::Error::InvalidPath { .. }) {
+            return names::wrong(prefix, "has an object below it whose name is not allowed");
+        }
+        self.trouble(prefix, "list what is there", error)
+    }
+
+    fn entry(&self, about: &ObjectMeta) -> Result<Option<Entry>, CloudError> {
+        let whole = about.location.as_ref();
+        let name = match self.prefix.as_ref() {
+            "" => Some(whole),
+            prefix => whole.strip_prefix(prefix).and_then(|rest| rest.strip_prefix('/')),
+        };
+        // The web pages of stores represent a folder by an empty object. It is skipped here.
+        let Some(name) = name.filter(|name| !name.is_empty()) else { return Ok(None) };
+        names::check(name)?;
+        Ok(Some(Entry { name: name.to_owned(), bytes: about.size, version: version(about) }))
+    }
+
+    /// Removes an object, if it exists.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub fn remove(&self, name: &str) -> Result<(), CloudError> {
+        let place = self.place(name)?;
+        self.wait(async {
+            match self.store.delete(&place).await {
+                Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
+                Err(error) => Err(self.trouble(name, "remove it", &error)),
+            }
+        })
+    }
+}
+
+/// The ETag without quotes: Azure gives it with them in one answer and without in another.
+pub(super) fn version(about: &ObjectMeta) -> Option<String> {
+    let tag = about.e_tag.as_deref()?;
+    let tag = tag.strip_prefix("W/").unwrap_or(tag).trim_matches('"');
+    (!tag.is_empty() && tag.len() <= 256).then(|| tag.escape_debug().to_string())
+}

@@ -1,0 +1,102 @@
+//! Checks names of objects. They come from other machines and become names of files, so a hostile name could lead out of
+//! the folder.
+
+use super::CloudError;
+use object_store::path::Path;
+use std::path::PathBuf;
+
+/// The most bytes of a name: the limit of S3 and Azure.
+const LONGEST: usize = 1024;
+
+/// The most bytes of a part: the limit of file systems, minus room for the ending of unfinished files.
+const LONGEST_PART: usize = 200;
+
+fn problem_of(name: &str) -> Option<&'static str> {
+    if name.is_empty() {
+        return Some("is empty");
+    }
+    if name.len() > LONGEST {
+        return Some("is too long");
+    }
+    // Two names that look alike, or a text that changes its direction, are no risk for files. Control characters are:
+    // they reach terminals.
+    if name.chars().any(|c| c.is_control() || c == '\\') {
+        return Some("has a control character or `\\`");
+    }
+    name.split('/').find_map(|part| match part {
+        "" => Some("starts or ends with `/`, or has an empty part"),
+        "." | ".." => Some("has a part `.` or `..`"),
+        _ if part.len() > LONGEST_PART => Some("has a part that is too long"),
+        _ => None,
+    })
+}
+
+/// Returns an error if the name cannot be used.
+pub(super) fn check(name: &str) -> Result<(), CloudError> {
+    problem_of(name).map_or(Ok(()), |problem| Err(wrong(name, problem)))
+}
+
+pub(super) fn wrong(name: &str, problem: &'static str) -> CloudError {
+    CloudError::Name { name: name.chars().take(80).collect(), problem }
+}
+
+/// The place of an object below a prefix. An empty name is the prefix.
+pub(super) fn below(prefix: &Path, name: &str) -> Result<Path, CloudError> {
+    let whole = match (prefix.as_ref(), name) {
+        ("", name) => name.to_owned(),
+        (prefix, "") => prefix.to_owned(),
+        (prefix, name) => format!("{prefix}/{name}"),
+    };
+    if whole.len() > LONGEST {
+        return Err(wrong(name, "is too long"));
+    }
+    Path::parse(whole).map_err(|_| wrong(name, "is not allowed in object stores"))
+}
+
+/// The file that an object becomes, relative to a folder.
+pub(super) fn file_of(name: &str) -> Result<PathBuf, CloudError> {
+    check(name)?;
+    // A drive letter or a stream of a file on Windows.
+    if cfg!(windows) && name.contains(':') {
+        return Err(wrong(name, "has a `:`"));
+    }
+    Ok(name.split('/').collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{check, file_of};
+
+    #[test]
+    fn a_plain_name_is_taken_and_becomes_a_file_below_the_folder() {
+        for name in ["a", "a/b.jsonl.gz", "chunk 7/ü.json", "a..b/...", "-", "~"] {
+            assert!(check(name).is_ok(), "{name}");
+            assert!(file_of(name).unwrap().is_relative());
+        }
+    }
+
+    #[test]
+    fn a_name_that_leaves_the_folder_is_refused() {
+        let long = "x".repeat(201);
+        let hostile = [
+            "",
+            "/",
+            "/etc/passwd",
+            "..",
+            "../a",
+            "a/../../b",
+            "a/./b",
+            "a//b",
+            "a/",
+            "a\\..\\b",
+            "a\nb",
+            "a\0",
+            "\u{9b}2J",
+            &long,
+        ];
+        for name in hostile {
+            assert!(check(name).is_err(), "{name:?}");
+            assert!(file_of(name).is_err(), "{name:?}");
+        }
+    }
+}

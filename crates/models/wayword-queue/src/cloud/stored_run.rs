@@ -1,0 +1,351 @@
+//! A run with its shared folder in an object store.
+//!
+//! Object stores have no rename and no locks. So results are sent first, each try under another prefix; then the chunk's
+//! mark is made with put-if-absent. The mark names the try that counts. If two workers make the same chunk, the results of
+//! the second one are never read.
+
+use super::{Bucket, CloudError};
+use crate::{
+    Board, Claimed, Done, Left, PLAN, Plan, QueueError, chunk_folder,
+    done::{CHUNKS, done_of, done_path, to_bytes},
+    folder::remove,
+    put_whole,
+};
+use std::{
+    collections::BTreeSet,
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    time::{SystemTime, UNIX_EPOCH},
+};
+
+/// The prefix of marks, the same as in the folder. Marks are listed often, so they must not be among the many results.
+const MARKS: &str = CHUNKS;
+/// The prefix of the results.
+const RESULTS: &str = "results";
+/// Largest file that is written once, bytes: a plan of ten million items.
+const MOST_BYTES: u64 = 1 << 30;
+/// Largest results of a chunk that are fetched, bytes.
+const MOST_CHUNK_BYTES: u64 = 1 << 40;
+
+/// A run in an object store. A worker works in a folder of its machine, sends each chunk's results when they are finished, and
+/// then makes a mark in the store. Each try has a prefix for its results, and the mark names that prefix.
+#[derive(Debug)]
+pub struct StoredRun {
+    bucket: Bucket,
+    folder: PathBuf,
+}
+
+impl StoredRun {
+    /// A run at an address, and the folder of this machine in which this worker, and no other, works on it.
+    ///
+    /// # Errors
+    /// When the address cannot be used or the folder cannot be made.
+    pub fn open(address: &str, folder: &Path) -> Result<Self, QueueError> {
+        let bucket = Bucket::open(address)?;
+        fs::create_dir_all(folder.join(CHUNKS)).map_err(QueueError::io(folder, "make the folder"))?;
+        Ok(Self { bucket, folder: folder.to_owned() })
+    }
+
+    /// Makes sure that the store makes one of several writers win.
+    ///
+    /// # Errors
+    /// When it does not, or cannot be used.
+    pub fn check(&self) -> Result<(), QueueError> {
+        Ok(self.bucket.check_put_new()?)
+    }
+
+    /// Fetches a file, if the store has it.
+    ///
+    /// # Errors
+    /// When the store or the folder cannot be used.
+    pub fn fetch_file(&self, name: &str) -> Result<(), QueueError> {
+        match self.bucket.get(name, MOST_BYTES)? {
+            Some(bytes) => put_whole(&self.folder.join(name), &bytes),
+            None => Ok(()),
+        }
+    }
+
+    /// Sends a file that is written once, and fetches the store's if another worker was first.
+    ///
+    /// # Errors
+    /// When the file cannot be read or the store cannot be used.
+    pub fn publish(&self, name: &str) -> Result<(), QueueError> {
+        let path = self.folder.join(name);
+        let bytes = fs::read(&path).map_err(QueueError::io(&path, "read"))?;
+        match self.bucket.put_new(name, bytes)? {
+            true => Ok(()),
+            false => self.fetch_file(name),
+        }
+    }
+
+    /// The numbers of the chunks that have a mark in the store.
+    fn marked(&self, plan: &Plan) -> Result<BTreeSet<usize>, QueueError> {
+        let there: BTreeSet<String> = self.bucket.list(MARKS)?.into_iter().map(|entry| entry.name).collect();
+        Ok((0..plan.chunks()).filter(|chunk| there.contains(&self.mark(*chunk))).collect())
+    }
+
+    /// Fetches the marks of finished chunks, in place of those that are here.
+    ///
+    /// # Errors
+    /// When the store or the folder cannot be used.
+    pub fn fetch_marks(&self, plan: &Plan) -> Result<(), QueueError> {
+        let marked = self.marked(plan)?;
+        for chunk in 0..plan.chunks() {
+            match marked.contains(&chunk) {
+                true => self.fetch_file(&self.mark(chunk))?,
+                // The chunk was opened again.
+                false => remove(&done_path(&self.folder, chunk))?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Sends the marks of this folder that the store lacks: the worker of a queue can be killed after it has reported a chunk and
+    /// before it sends the mark. The marks of this folder have to be those of the queue.
+    ///
+    /// # Errors
+    /// When the store or the folder cannot be used.
+    pub fn send_marks(&self, plan: &Plan) -> Result<(), QueueError> {
+        let marked = self.marked(plan)?;
+        for chunk in (0..plan.chunks()).filter(|chunk| !marked.contains(chunk)) {
+            if let Some(done) = done_of(&self.folder, chunk)? {
+                self.put(&done)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the mark of a chunk, so that it is made again.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub fn reopen(&self, chunk: usize) -> Result<(), QueueError> {
+        Ok(self.bucket.remove(&self.mark(chunk))?)
+    }
+
+    /// Fetches the plan, the marks and the results that these name into the folder. Continues where it was stopped.
+    ///
+    /// # Errors
+    /// When there is no run, the folder has another one, or the store or the folder cannot be used.
+    pub fn fetch(&self, progress: &dyn Fn(usize, usize)) -> Result<(), QueueError> {
+        let Some(bytes) = self.bucket.get(PLAN, MOST_BYTES)? else {
+            return Err(QueueError::NoPlan(self.bucket.to_string().into()));
+        };
+        let path = self.folder.join(PLAN);
+        match fs::read(&path) {
+            Ok(before) if before != bytes => {
+                let problem = "this folder has another run".to_owned();
+                return Err(QueueError::Broken { path: self.folder.clone(), problem });
+            }
+            Ok(_) => {}
+            Err(_) => put_whole(&path, &bytes)?,
+        }
+        let plan = Plan::of(&self.folder)?;
+        self.fetch_marks(&plan)?;
+        for chunk in 0..plan.chunks() {
+            if let Some(done) = done_of(&self.folder, chunk)? {
+                let local = chunk_folder(&self.folder, chunk, done.epoch);
+                self.bucket.fetch_folder(&self.results(&local), &local, MOST_CHUNK_BYTES, &|_, _| ())?;
+            }
+            progress(chunk + 1, plan.chunks());
+        }
+        Ok(())
+    }
+
+    /// A board that sends the results of a chunk before it reports the chunk as finished.
+    #[must_use]
+    pub fn sending<'a>(&'a self, board: &'a dyn Board) -> Sending<'a> {
+        Sending { run: self, board }
+    }
+
+    /// The name of a chunk's mark, here and in the store.
+    fn mark(&self, chunk: usize) -> String {
+        name_in(&self.folder, &done_path(&self.folder, chunk))
+    }
+
+    /// Where the results of a try are, in the store.
+    fn results(&self, local: &Path) -> String {
+        format!("{RESULTS}/{}", name_in(&self.folder.join(CHUNKS), local))
+    }
+
+    /// Makes the mark of a chunk. Returns whether the store's mark is now this one. A mark of an earlier claim of a queue is
+    /// replaced: it was left behind when the chunk was opened again.
+    fn put(&self, done: &Done) -> Result<bool, QueueError> {
+        let (name, path) = (self.mark(done.chunk), done_path(&self.folder, done.chunk));
+        let bytes = to_bytes(&path, done)?;
+        if self.bucket.put_new(&name, bytes.clone())? {
+            return Ok(true);
+        }
+        self.fetch_file(&name)?;
+        match done_of(&self.folder, done.chunk)? {
+            Some(there) if there.epoch == done.epoch => Ok(true),
+            Some(there) if is_try(done.epoch) || there.epoch > done.epoch => Ok(false),
+            _ => {
+                self.bucket.put(&name, bytes)?;
+                Ok(true)
+            }
+        }
+    }
+}
+
+/// The name that a file of the run has in the store.
+fn name_in(folder: &Path, path: &Path) -> String {
+    let parts = path.strip_prefix(folder).unwrap_or(path).components();
+    parts.map(|part| part.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/")
+}
+
+/// The number of a try of a shard, which has no claims: microseconds since 1970. Two workers of one part cannot see each other in a
+/// store; with these numbers they get two prefixes for their results.
+fn new_try() -> i64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    i64::try_from(since.as_micros()).unwrap_or(i64::MAX).max(FIRST_TRY)
+}
+
+/// The smallest number of a try. It is larger than any number of a claim, because no chunk is claimed so often.
+const FIRST_TRY: i64 = 1 << 40;
+
+/// Whether this is the number of a try, and not the claim of a queue.
+fn is_try(epoch: i64) -> bool {
+    epoch >= FIRST_TRY
+}
+
+/// The claim as the board knows it: a shard knows no tries.
+fn on_board(claimed: Claimed) -> Claimed {
+    if is_try(claimed.epoch) { Claimed { epoch: 0, ..claimed } } else { claimed }
+}
+
+/// A board that sends the results of chunks into an object store.
+pub struct Sending<'a> {
+    run: &'a StoredRun,
+    board: &'a dyn Board,
+}
+
+impl Sending<'_> {
+    fn send(&self, claimed: Claimed, results: &Path) -> Result<(), QueueError> {
+        let sent = self.run.bucket.send_folder(results, &self.run.results(results));
+        sent.map(drop).or_else(|error: CloudError| {
+            // The failure has no connection with the chunk, so it does not count as a try.
+            self.board.hand_back(on_board(claimed))?;
+            Err(error.into())
+        })
+    }
+}
+
+impl Board for Sending<'_> {
+    fn take(&self) -> Result<Option<Claimed>, QueueError> {
+        let taken = self.board.take()?;
+        Ok(taken.map(|taken| if taken.epoch == 0 { Claimed { epoch: new_try(), ..taken } } else { taken }))
+    }
+
+    fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
+        let results = chunk_folder(&self.run.folder, claimed.chunk, claimed.epoch);
+        self.send(claimed, &results)?;
+        let holds = self.board.complete(on_board(claimed), done)? && self.run.put(done)?;
+        if !is_try(claimed.epoch) {
+            // The queue knows which chunks are finished, also after one was opened again. A local mark would be outdated then.
+            remove(&done_path(&self.run.folder, claimed.chunk))?;
+        }
+        match fs::remove_dir_all(&results) {
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(QueueError::io(&results, "remove")(error)),
+            _ => Ok(holds),
+        }
+    }
+
+    fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {
+        self.board.hand_back(on_board(claimed))
+    }
+
+    fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError> {
+        self.board.give_up(on_board(claimed), reason)
+    }
+
+    fn left(&self) -> Result<Left, QueueError> {
+        self.board.left()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Beat, FRESH, Heart, Part, Shard};
+
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().unwrap()
+    }
+
+    fn plan() -> Plan {
+        Plan::new("r".into(), 1, String::new(), vec![String::new(); 3])
+    }
+
+    /// Makes the open chunks. Returns the number of each, and whether its results count.
+    fn make_all(run: &StoredRun, text: &str) -> Vec<(usize, bool)> {
+        let (plan, part) = (plan(), Part { k: 0, n: 1 });
+        let beat = Beat { worker: "w".into(), token: "t".into(), part: String::new() };
+        let heart = Heart::start(&run.folder, &part.name(), beat, FRESH, |_| false).unwrap();
+        let shard = Shard::new(&run.folder, &plan, part, &heart);
+        let board = run.sending(&shard);
+        let mut made = Vec::new();
+        while let Some(claimed) = board.take().unwrap() {
+            let results = chunk_folder(&run.folder, claimed.chunk, claimed.epoch);
+            fs::create_dir_all(&results).unwrap();
+            fs::write(results.join("texts"), text).unwrap();
+            let done = Done { chunk: claimed.chunk, epoch: claimed.epoch, ..Done::default() };
+            made.push((claimed.chunk, board.complete(claimed, &done).unwrap()));
+            assert!(!results.exists(), "a machine's disk need not hold the run");
+        }
+        made
+    }
+
+    #[test]
+    fn fetch_returns_the_results_of_the_first_worker() {
+        let (there, first, second, all) = (folder(), folder(), folder(), folder());
+        let address = format!("file://{}", there.path().display());
+        let [run, other, whole] =
+            [&first, &second, &all].map(|folder| StoredRun::open(&address, folder.path()).unwrap());
+        run.check().unwrap();
+        plan().put(first.path()).unwrap();
+        run.publish(PLAN).unwrap();
+        // Another plan is not sent: the plan in the store is used.
+        Plan::new("other".into(), 1, String::new(), Vec::new()).put(second.path()).unwrap();
+        other.publish(PLAN).unwrap();
+        assert_eq!(Plan::of(second.path()).unwrap(), plan());
+
+        assert_eq!(make_all(&run, "first"), [(0, true), (1, true), (2, true)]);
+        // Another worker of the same part, which does not see the first one: its results do not count.
+        assert_eq!(make_all(&other, "second"), [(0, false), (1, false), (2, false)]);
+        other.reopen(1).unwrap();
+        other.fetch_marks(&plan()).unwrap();
+        assert_eq!(make_all(&other, "second"), [(1, true)]);
+
+        let texts = || {
+            whole.fetch(&|_, _| ()).unwrap();
+            (0..3)
+                .map(|chunk| {
+                    let done = done_of(all.path(), chunk).unwrap()?;
+                    Some(fs::read_to_string(chunk_folder(all.path(), chunk, done.epoch).join("texts")).unwrap())
+                })
+                .collect::<Vec<_>>()
+        };
+        let of = |text: &str| Some(text.to_owned());
+        assert_eq!(texts(), [of("first"), of("second"), of("first")]);
+        other.reopen(2).unwrap();
+        assert_eq!(texts(), [of("first"), of("second"), None], "what is to be made again is not there");
+    }
+
+    #[test]
+    fn put_replaces_the_mark_of_an_earlier_claim() {
+        let (there, here) = (folder(), folder());
+        let run = StoredRun::open(&format!("file://{}", there.path().display()), here.path()).unwrap();
+        let done = |epoch| Done { epoch, ..Done::default() };
+        let put = |epoch| run.put(&done(epoch)).unwrap();
+        assert_eq!([put(2), put(2), put(1), put(3), put(2)], [true, true, false, true, false]);
+        run.fetch_marks(&plan()).unwrap();
+        assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
+        // The queue has the chunk as finished, and the store has no mark of it.
+        run.reopen(0).unwrap();
+        run.send_marks(&plan()).unwrap();
+        run.fetch_marks(&plan()).unwrap();
+        assert_eq!(done_of(here.path(), 0).unwrap().unwrap().epoch, 3);
+    }
+}

@@ -1,0 +1,147 @@
+//! The marks of chunks in the run folder: `000012.done` records a finished chunk, `000012.dead` one that was given up.
+
+use crate::{Plan, QueueError, folder::remove, put_new};
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
+
+/// The folder of chunks and their marks in a run folder.
+pub(crate) const CHUNKS: &str = "chunks";
+/// Largest mark that is read, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// The record of a finished chunk. Times, names and costs are here and not in the results, so that the
+/// results do not depend on the worker that made them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Done {
+    /// Its number.
+    pub chunk: usize,
+    /// The claim under which it was made; 0 in a shard.
+    pub epoch: i64,
+    /// Items that have texts, accepted or rejected.
+    pub made: usize,
+    /// Accepted texts.
+    pub written: usize,
+    /// Texts that failed their checks.
+    pub rejected: usize,
+    /// Items that failed, by reason.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub failed: BTreeMap<String, usize>,
+    /// How long it took the worker that finished it, seconds.
+    pub seconds: f64,
+    /// What its calls cost that worker, US dollars.
+    pub usd: f64,
+    /// The worker that made it.
+    pub worker: String,
+    /// When it was finished, seconds since 1970.
+    pub at_unix_s: u64,
+}
+
+/// The mark of a finished chunk.
+#[must_use]
+pub fn done_path(folder: &Path, chunk: usize) -> PathBuf {
+    folder.join(CHUNKS).join(format!("{chunk:06}.done"))
+}
+
+/// The mark of a chunk that was given up.
+#[must_use]
+pub fn dead_path(folder: &Path, chunk: usize) -> PathBuf {
+    folder.join(CHUNKS).join(format!("{chunk:06}.dead"))
+}
+
+/// The folder of a chunk's results, by the claim under which they are made: two workers never write into one.
+#[must_use]
+pub fn chunk_folder(folder: &Path, chunk: usize, epoch: i64) -> PathBuf {
+    let name = if epoch == 0 { format!("{chunk:06}") } else { format!("{chunk:06}.{epoch}") };
+    folder.join(CHUNKS).join(name)
+}
+
+impl Done {
+    /// Writes the mark, unless there is one. Returns whether this one was written. The results have to be synced before.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn put(&self, folder: &Path) -> Result<bool, QueueError> {
+        let path = done_path(folder, self.chunk);
+        put_new(&path, &to_bytes(&path, self)?)
+    }
+
+    /// How many items failed.
+    #[must_use]
+    pub fn failures(&self) -> usize {
+        self.failed.values().sum()
+    }
+}
+
+pub(crate) fn to_bytes(path: &Path, value: &impl Serialize) -> Result<Vec<u8>, QueueError> {
+    let mut bytes = serde_json::to_vec(value)
+        .map_err(|error| QueueError::Broken { path: path.to_owned(), problem: error.to_string() })?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// Reads a small file of JSON; `None` if there is none.
+pub(crate) fn from_file<T: serde::de::DeserializeOwned>(path: &Path) -> Result<Option<T>, QueueError> {
+    let broken = |problem: String| QueueError::Broken { path: path.to_owned(), problem };
+    match fs::metadata(path) {
+        Ok(about) if about.len() > MOST_BYTES => return Err(broken("it is larger than 1 MiB".to_owned())),
+        Ok(_) => {}
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(QueueError::Io { path: path.to_owned(), doing: "read", source }),
+    }
+    let bytes = match fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(QueueError::Io { path: path.to_owned(), doing: "read", source }),
+    };
+    serde_json::from_slice(&bytes).map(Some).map_err(|error| broken(error.to_string()))
+}
+
+/// The record of a chunk; `None` if it is not finished.
+///
+/// # Errors
+/// When its mark cannot be read.
+pub fn done_of(folder: &Path, chunk: usize) -> Result<Option<Done>, QueueError> {
+    from_file(&done_path(folder, chunk))
+}
+
+/// Why a chunk was given up; `None` if it was not.
+///
+/// # Errors
+/// When its mark cannot be read.
+pub fn dead_of(folder: &Path, chunk: usize) -> Result<Option<String>, QueueError> {
+    from_file(&dead_path(folder, chunk))
+}
+
+/// The chunks with failed items, or given up, for a reason that contains the text `reason`.
+///
+/// # Errors
+/// When a mark cannot be read.
+pub fn failing(folder: &Path, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
+    let mut failing = Vec::new();
+    for chunk in 0..plan.chunks() {
+        let failed = done_of(folder, chunk)?.is_some_and(|done| done.failed.keys().any(|why| why.contains(reason)));
+        if failed || dead_of(folder, chunk)?.is_some_and(|why| why.contains(reason)) {
+            failing.push(chunk);
+        }
+    }
+    Ok(failing)
+}
+
+/// Makes chunks open again. Their results stay, and the next worker tries only the failed items.
+///
+/// # Errors
+/// When a mark cannot be removed.
+pub fn reopen(folder: &Path, chunks: &[usize]) -> Result<(), QueueError> {
+    for chunk in chunks {
+        for mark in [done_path(folder, *chunk), dead_path(folder, *chunk), crate::shard::tries_path(folder, *chunk)] {
+            remove(&mark)?;
+        }
+    }
+    Ok(())
+}

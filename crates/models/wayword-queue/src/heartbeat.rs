@@ -1,0 +1,229 @@
+//! Heartbeats of workers that share only a folder.
+//!
+//! A worker has a file in the folder and writes it anew every few seconds. The age of the file is measured by the clock of
+//! the file system, because the machines' own clocks may differ. A worker that finds a fresh file of another worker with
+//! the same part is refused, so that no two workers make the same chunks.
+
+use crate::{
+    QueueError,
+    done::{from_file, to_bytes},
+    folder::remove,
+    put_new, put_whole,
+};
+use serde::{Deserialize, Serialize};
+use std::{
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, SystemTime},
+};
+
+/// How long a heartbeat counts.
+pub const FRESH: Duration = Duration::from_secs(60);
+/// How many heartbeats there are in that time.
+const BEATS: u32 = 6;
+
+/// The folder of the heartbeat files, in a run folder.
+const WORKERS: &str = "workers";
+
+/// The content of a heartbeat file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Beat {
+    /// The worker, for people: machine and process.
+    pub worker: String,
+    /// A token that no other worker has.
+    pub token: String,
+    /// Its part of the run, as in `shard 3 of 64`.
+    pub part: String,
+}
+
+/// A heartbeat file of a run folder, with its age.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Alive {
+    /// The name of its file.
+    pub file: String,
+    /// Its content.
+    pub beat: Beat,
+    /// Time since it was written, by the clock of the file system.
+    pub age: Duration,
+}
+
+/// A name for this worker that no other has: machine, process and time.
+#[must_use]
+pub fn worker_name() -> String {
+    // If the machine has no name, process and time still distinguish workers.
+    let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let host: String = host.trim().chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_micros();
+    format!("{host}-{}-{since:x}", std::process::id())
+}
+
+/// A thread that renews a worker's heartbeat file until it is dropped.
+#[derive(Debug)]
+pub struct Heart {
+    path: PathBuf,
+    token: String,
+    is_lost: Arc<AtomicBool>,
+    end: Option<mpsc::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Heart {
+    /// Starts a heartbeat in a file of this name.
+    ///
+    /// # Errors
+    /// When another worker has a fresh heartbeat in a file of this name, or in a file for which `excludes` returns true.
+    pub fn start(
+        folder: &Path,
+        name: &str,
+        beat: Beat,
+        fresh: Duration,
+        excludes: impl Fn(&str) -> bool,
+    ) -> Result<Self, QueueError> {
+        let workers = folder.join(WORKERS);
+        fs::create_dir_all(&workers).map_err(QueueError::io(&workers, "make the folder"))?;
+        let path = workers.join(name);
+        for Alive { file, beat: told, age } in beats(folder)? {
+            if age < fresh && told.token != beat.token && (file == name || excludes(&file)) {
+                return Err(QueueError::Busy {
+                    path: workers.join(file),
+                    who: format!("{} ({})", told.worker, told.part),
+                    seconds: age.as_secs(),
+                    fresh: fresh.as_secs(),
+                });
+            }
+        }
+        // The file of a dead worker is removed. If several workers do this at the same moment, one of them writes first.
+        remove(&path)?;
+        let bytes = to_bytes(&path, &beat)?;
+        if !put_new(&path, &bytes)? {
+            let who = from_file::<Beat>(&path)?.map_or_else(|| "another worker".to_owned(), |other| other.worker);
+            return Err(QueueError::Busy { path, who, seconds: 0, fresh: fresh.as_secs() });
+        }
+        let (end, ended) = mpsc::channel();
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let thread = {
+            let (path, is_lost, token) = (path.clone(), Arc::clone(&is_lost), beat.token.clone());
+            let every = fresh / BEATS;
+            thread::Builder::new().name("heartbeat".to_owned()).spawn(move || {
+                while ended.recv_timeout(every) == Err(mpsc::RecvTimeoutError::Timeout) {
+                    if !is_ours(&path, &token) {
+                        is_lost.store(true, Ordering::SeqCst);
+                        return;
+                    }
+                    // If this write fails, the next one may succeed.
+                    let _ = put_whole(&path, &bytes);
+                }
+            })
+        };
+        let thread = thread.map_err(QueueError::io(&path, "start the thread that writes"))?;
+        Ok(Self { path, token: beat.token, is_lost, end: Some(end), thread: Some(thread) })
+    }
+
+    /// Refuses to go on if another worker took over, because this one was suspended for too long.
+    ///
+    /// # Errors
+    /// [`QueueError::TakenOver`].
+    pub fn check(&self) -> Result<(), QueueError> {
+        if self.is_lost.load(Ordering::SeqCst) || !is_ours(&self.path, &self.token) {
+            return Err(QueueError::TakenOver(self.path.clone()));
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Heart {
+    fn drop(&mut self) {
+        self.end = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+        if is_ours(&self.path, &self.token) {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Whether a file is still this worker's. A file that cannot be read for a moment counts as this worker's.
+fn is_ours(path: &Path, token: &str) -> bool {
+    match from_file::<Beat>(path) {
+        Ok(Some(beat)) => beat.token == token,
+        Ok(None) => false,
+        Err(_) => true,
+    }
+}
+
+/// The heartbeats in a run folder, by the names of their files, with their ages by the clock of the file system.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub fn beats(folder: &Path) -> Result<Vec<Alive>, QueueError> {
+    let workers = folder.join(WORKERS);
+    let entries = match fs::read_dir(&workers) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(source) => return Err(QueueError::Io { path: workers, doing: "list", source }),
+    };
+    let now = now_of(&workers)?;
+    let mut beats = Vec::new();
+    for entry in entries.flatten() {
+        let Ok(name) = entry.file_name().into_string() else { continue };
+        // A file that is being written has a longer name.
+        if name.contains('.') {
+            continue;
+        }
+        let (Ok(Some(beat)), Ok(about)) = (from_file::<Beat>(&entry.path()), entry.metadata()) else { continue };
+        let age = about.modified().ok().and_then(|at| now.duration_since(at).ok()).unwrap_or_default();
+        beats.push(Alive { file: name, beat, age });
+    }
+    beats.sort_by(|a, b| a.file.cmp(&b.file));
+    Ok(beats)
+}
+
+/// The time by the clock of the file system.
+fn now_of(folder: &Path) -> Result<SystemTime, QueueError> {
+    let path = folder.join(format!(".clock-{}-{:?}", std::process::id(), thread::current().id()));
+    let failed = || QueueError::io(&path, "ask the file system for the time by");
+    put_whole(&path, b"now")?;
+    let now = fs::metadata(&path).and_then(|about| about.modified()).map_err(failed())?;
+    fs::remove_file(&path).map_err(failed())?;
+    Ok(now)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn beat(token: &str) -> Beat {
+        Beat { worker: format!("host {token}"), token: token.to_owned(), part: "shard 0 of 2".to_owned() }
+    }
+
+    #[test]
+    fn start_refuses_a_second_worker_while_the_first_lives() {
+        let folder = tempfile::tempdir().unwrap();
+        let start = |token: &str, fresh| Heart::start(folder.path(), "shard", beat(token), fresh, |_| false);
+        let first = start("a", FRESH).unwrap();
+        let refused = start("b", FRESH).unwrap_err();
+        assert!(matches!(refused, QueueError::Busy { .. }) && refused.to_string().contains("host a"), "{refused}");
+        drop(first);
+        assert!(start("b", FRESH).is_ok());
+    }
+
+    #[test]
+    fn check_fails_after_a_suspended_worker_was_taken_over() {
+        let folder = tempfile::tempdir().unwrap();
+        // The first beats too seldom for the second's patience, as a suspended one does.
+        let first = Heart::start(folder.path(), "shard", beat("a"), FRESH, |_| false).unwrap();
+        thread::sleep(Duration::from_millis(60));
+        let second = Heart::start(folder.path(), "shard", beat("b"), Duration::from_millis(50), |_| false).unwrap();
+        assert!(matches!(first.check(), Err(QueueError::TakenOver(_))));
+        drop(first);
+        assert!(second.check().is_ok(), "the first does not remove the second's file");
+    }
+}

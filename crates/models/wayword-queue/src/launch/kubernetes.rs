@@ -1,0 +1,222 @@
+//! A manifest for Kubernetes: an Indexed Job with one index for each worker.
+//!
+//! It needs Kubernetes 1.33 or later, in which limits by index and policies of failure are stable.
+//!
+//! The manifest names secrets and does not contain them: `--password-env` reads an environment variable that comes from a secret
+//! ([`SecretEnv`]), and PGPASSFILE names a password file that comes from a secret ([`SecretFile`]). The files of a secret belong to
+//! root, so a worker that is not root reads them as a member of their group. Kubernetes lets the group read them even if the mode
+//! forbids it (0440 instead of 0400). Wayword accepts these files; libpq refuses them.
+
+use super::{
+    LaunchError, Worker,
+    check::{amount, dotted, label, text, variable, word, wrong},
+    quote::render,
+};
+use serde::Serialize;
+
+const TEMPLATE: &str = include_str!("kubernetes.j2");
+
+/// Most characters of a label.
+const LABEL: usize = 63;
+/// How often an index is started again after its worker failed for a temporary reason.
+const TRIES: u32 = 3;
+/// How long a worker may take to hand its work back, seconds.
+const GRACE_S: u32 = 120;
+/// Where the password file is mounted.
+const SECRETS: &str = "/run/wayword";
+/// The user of Wayword's image.
+const USER: u32 = 65532;
+
+/// Workers in Kubernetes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KubernetesJob {
+    /// What each worker runs.
+    pub worker: Worker,
+    /// The job's name.
+    pub name: String,
+    /// Its namespace; without it, the one that `kubectl` is set to.
+    pub namespace: Option<String>,
+    /// The image that has the program.
+    pub image: String,
+    /// CPUs of a worker: `2`, `500m`.
+    pub cpus: String,
+    /// Memory of a worker: `16Gi`.
+    pub memory: String,
+    /// GPUs of a worker.
+    pub gpus: u32,
+    /// The number of the user and the group that workers run as. Not root.
+    pub user: u32,
+    /// The folder that all workers share.
+    pub shared: Option<SharedFolder>,
+    /// Environment variables that come from secrets.
+    pub secrets: Vec<SecretEnv>,
+    /// The password file of PostgreSQL; `PGPASSFILE` names it.
+    pub pass_file: Option<SecretFile>,
+}
+
+/// A folder that all workers share: a claim that many machines may write to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SharedFolder {
+    /// The `PersistentVolumeClaim`.
+    pub claim: String,
+    /// Where workers see it.
+    pub mount: String,
+}
+
+/// An environment variable that comes from a secret.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SecretEnv {
+    /// The variable.
+    pub name: String,
+    /// The `Secret`.
+    pub secret: String,
+    /// The key in it.
+    pub key: String,
+}
+
+/// A file that comes from a secret.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SecretFile {
+    /// The `Secret`.
+    pub secret: String,
+    /// The key in it.
+    pub key: String,
+}
+
+impl KubernetesJob {
+    /// Workers with one CPU, 2 GiB and no GPU each.
+    #[must_use]
+    pub fn new(worker: Worker, image: &str) -> Self {
+        Self {
+            worker,
+            name: "wayword".to_owned(),
+            namespace: None,
+            image: image.to_owned(),
+            cpus: "1".to_owned(),
+            memory: "2Gi".to_owned(),
+            gpus: 0,
+            user: USER,
+            shared: None,
+            secrets: Vec::new(),
+            pass_file: None,
+        }
+    }
+
+    fn check(&self) -> Result<(), LaunchError> {
+        self.worker.check()?;
+        label("--name", &self.name, self.longest_name())?;
+        self.namespace.as_deref().map_or(Ok(()), |name| label("--namespace", name, LABEL))?;
+        word("--image", &self.image, "./:@_-")?;
+        amount("--cpus", &self.cpus, &["m"], "write a number, as in 2, 0.5 or 500m")?;
+        let units = ["Ki", "Mi", "Gi", "Ti", "k", "M", "G", "T"];
+        amount("--memory", &self.memory, &units, "write a number and a unit, as in 16Gi")?;
+        if self.user == 0 {
+            return Err(wrong("--user", "0", "is root", "give the number of another user; no worker needs root"));
+        }
+        self.shared.as_ref().map_or(Ok(()), SharedFolder::check)?;
+        self.check_secrets()
+    }
+
+    /// A pod's host is named after the job and the index, and that name is a label too.
+    fn longest_name(&self) -> usize {
+        let index = self.worker.workers.saturating_sub(1).to_string();
+        LABEL.saturating_sub(1 + index.len())
+    }
+
+    fn check_secrets(&self) -> Result<(), LaunchError> {
+        let mut names = Vec::new();
+        for secret in &self.secrets {
+            variable("--secret", &secret.name)?;
+            check_secret(&secret.secret, &secret.key)?;
+            let is_ours =
+                secret.name == "JOB_COMPLETION_INDEX" || (self.pass_file.is_some() && secret.name == "PGPASSFILE");
+            if is_ours || names.contains(&&secret.name) {
+                return Err(wrong("--secret", &secret.name, "would be set twice", "leave one of the two out"));
+            }
+            names.push(&secret.name);
+        }
+        self.pass_file.as_ref().map_or(Ok(()), |file| check_secret(&file.secret, &file.key))
+    }
+}
+
+impl SharedFolder {
+    fn check(&self) -> Result<(), LaunchError> {
+        dotted("--claim", &self.claim)?;
+        text("--mount", &self.mount)?;
+        let is_inner = self.mount.split('/').skip(1).all(|part| !matches!(part, "" | "." | ".."));
+        let is_ours = self.mount == SECRETS || self.mount.starts_with(&format!("{SECRETS}/"));
+        match self.mount.starts_with('/') && is_inner && !is_ours && !self.mount.contains(':') {
+            true => Ok(()),
+            false => Err(wrong(
+                "--mount",
+                &self.mount,
+                "is no folder to mount at",
+                "give a whole path without a colon, as in /data; /run/wayword is taken",
+            )),
+        }
+    }
+}
+
+fn check_secret(secret: &str, key: &str) -> Result<(), LaunchError> {
+    dotted("--secret", secret)?;
+    match key.len() <= 253 && !matches!(key, "." | "..") {
+        true => word("--secret", key, "._-"),
+        false => Err(wrong("--secret", key, "is no key of a secret", "see the keys with `kubectl describe secret`")),
+    }
+}
+
+/// The values of the template.
+#[derive(Debug, Serialize)]
+struct View<'a> {
+    name: &'a str,
+    namespace: Option<&'a str>,
+    image: &'a str,
+    cpus: &'a str,
+    memory: &'a str,
+    gpus: u32,
+    user: u32,
+    shared: Option<&'a SharedFolder>,
+    secrets: &'a [SecretEnv],
+    pass_file: Option<&'a SecretFile>,
+    pass_folder: &'static str,
+    program: &'a str,
+    arguments: &'a [String],
+    workers: u32,
+    needs_part: bool,
+    lost_indexes: u32,
+    tries: u32,
+    grace_s: u32,
+}
+
+/// The manifest: YAML for `kubectl apply`.
+///
+/// # Errors
+/// When a value cannot or must not be in a manifest: see [`LaunchError`].
+pub fn manifest(job: &KubernetesJob) -> Result<String, LaunchError> {
+    job.check()?;
+    let workers = job.worker.workers;
+    render(
+        TEMPLATE,
+        View {
+            name: &job.name,
+            namespace: job.namespace.as_deref(),
+            image: &job.image,
+            cpus: &job.cpus,
+            memory: &job.memory,
+            gpus: job.gpus,
+            user: job.user,
+            shared: job.shared.as_ref(),
+            secrets: &job.secrets,
+            pass_file: job.pass_file.as_ref(),
+            pass_folder: SECRETS,
+            program: &job.worker.program,
+            arguments: &job.worker.arguments,
+            workers,
+            needs_part: job.worker.needs_part(),
+            // From 10^5 indexes on, a server takes 10^4 at most.
+            lost_indexes: (workers / 4).clamp(1, 10_000),
+            tries: TRIES,
+            grace_s: GRACE_S,
+        },
+    )
+}

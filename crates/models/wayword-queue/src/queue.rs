@@ -1,0 +1,392 @@
+//! A board in PostgreSQL: a worker that asks gets the first open chunk. The rules are those of [`crate::Row`], in SQL.
+//!
+//! Each claim of a chunk has a number, its epoch, which goes up. A worker that was suspended and taken over still has the
+//! old epoch, so its late result changes no row.
+
+use crate::{Board, Claimed, Done, Left, Plan, QueueError, TRIES, failing, reopen};
+use std::{
+    path::{Path, PathBuf},
+    sync::{Arc, mpsc},
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+use wayword_database::{Database, Pool, Tables, prepare};
+
+/// The tables of the queue.
+///
+/// `chunks` changes only when a chunk changes hands, and results are not in it, so its rows stay few and short. A worker's
+/// heartbeat is one row of `workers`.
+pub const TABLES: Tables = Tables { schema: "wayword_queue", steps: &[FIRST], grants: GRANTS };
+
+const FIRST: &str = "
+CREATE TABLE wayword_queue.runs (
+    run TEXT PRIMARY KEY, plan TEXT NOT NULL, chunks INTEGER NOT NULL, at TIMESTAMPTZ NOT NULL DEFAULT now()
+);
+CREATE TABLE wayword_queue.chunks (
+    run TEXT NOT NULL REFERENCES wayword_queue.runs ON DELETE CASCADE, chunk INTEGER NOT NULL,
+    state TEXT NOT NULL DEFAULT 'open' CHECK (state IN ('open', 'running', 'done', 'dead')),
+    epoch BIGINT NOT NULL DEFAULT 0, tries INTEGER NOT NULL DEFAULT 0, worker TEXT, reason TEXT,
+    since TIMESTAMPTZ, done TEXT, retries INTEGER NOT NULL DEFAULT 0, PRIMARY KEY (run, chunk)
+) WITH (fillfactor = 70);
+CREATE INDEX chunks_open ON wayword_queue.chunks (run, chunk) WHERE state = 'open';
+CREATE INDEX chunks_running ON wayword_queue.chunks (run, chunk) WHERE state = 'running';
+CREATE TABLE wayword_queue.workers (
+    run TEXT NOT NULL REFERENCES wayword_queue.runs ON DELETE CASCADE, worker TEXT NOT NULL,
+    beat TIMESTAMPTZ NOT NULL DEFAULT now(), since TIMESTAMPTZ NOT NULL DEFAULT now(), PRIMARY KEY (run, worker)
+) WITH (fillfactor = 50);
+";
+
+const GRANTS: &str = "
+GRANT USAGE ON SCHEMA wayword_queue TO ROLE;
+GRANT SELECT ON wayword_queue.version TO ROLE;
+GRANT SELECT, INSERT ON wayword_queue.runs TO ROLE;
+GRANT SELECT, INSERT, UPDATE ON wayword_queue.chunks TO ROLE;
+GRANT SELECT, INSERT, UPDATE, DELETE ON wayword_queue.workers TO ROLE;
+";
+
+/// Gives up chunks that were begun too often by workers that are gone.
+const BURY: &str = "
+UPDATE wayword_queue.chunks AS c SET state = 'dead', reason = 'begun ' || tries || ' times without a result: its worker ended each time'
+WHERE run = $1 AND state = 'running' AND tries >= $2 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
+    SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
+)";
+
+/// Claims a chunk of a worker that is gone, or else the first open one. No worker counts as gone until the server has been
+/// up for a whole lease, because while it was down no heartbeat could arrive. `SKIP LOCKED` gives different chunks to two
+/// workers that ask at once. The two kinds are looked up separately, each in a small index, so that the finished chunks are
+/// never scanned.
+const CLAIM: &str = "
+WITH lost AS (
+    SELECT c.chunk FROM wayword_queue.chunks AS c
+    WHERE c.run = $1 AND c.state = 'running' AND c.tries < $4 AND pg_postmaster_start_time() < now() - make_interval(secs => $3) AND NOT EXISTS (
+        SELECT 1 FROM wayword_queue.workers AS w WHERE w.run = c.run AND w.worker = c.worker AND w.beat > now() - make_interval(secs => $3)
+    )
+    ORDER BY c.chunk LIMIT 1 FOR UPDATE SKIP LOCKED
+), first AS (
+    SELECT c.chunk FROM wayword_queue.chunks AS c
+    WHERE c.run = $1 AND c.state = 'open' AND NOT EXISTS (SELECT 1 FROM lost)
+    ORDER BY c.chunk LIMIT 1 FOR UPDATE SKIP LOCKED
+), next AS (SELECT chunk FROM lost UNION ALL SELECT chunk FROM first)
+UPDATE wayword_queue.chunks AS c SET state = 'running', epoch = c.epoch + 1, tries = c.tries + 1, worker = $2, since = now()
+FROM next WHERE c.run = $1 AND c.chunk = next.chunk RETURNING c.chunk, c.epoch";
+
+/// The chunk that a worker already has, although the answer to its claim was lost.
+const MINE: &str = "SELECT chunk, epoch FROM wayword_queue.chunks WHERE run = $1 AND worker = $2 AND state = 'running'";
+
+const COMPLETE: &str = "
+UPDATE wayword_queue.chunks SET state = 'done', done = $4, since = now()
+WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
+
+const IS_DONE: &str = "
+SELECT 1 FROM wayword_queue.chunks WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'done'";
+
+const HAND_BACK: &str = "
+UPDATE wayword_queue.chunks SET state = 'open', tries = tries - 1
+WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
+
+const GIVE_UP: &str = "
+UPDATE wayword_queue.chunks SET state = CASE WHEN tries >= $4 THEN 'dead' ELSE 'open' END, reason = $5, retries = retries + 1
+WHERE run = $1 AND chunk = $2 AND epoch = $3 AND state = 'running'";
+
+const BEAT: &str = "
+INSERT INTO wayword_queue.workers (run, worker) VALUES ($1, $2)
+ON CONFLICT (run, worker) DO UPDATE SET beat = now()";
+
+/// A worker's view of a run's chunks.
+#[derive(Debug)]
+pub struct Queue {
+    pool: Arc<Pool>,
+    run: String,
+    worker: String,
+    /// Where the marks of finished chunks go.
+    folder: PathBuf,
+    lease: Duration,
+    beating: Option<(mpsc::Sender<()>, JoinHandle<()>)>,
+}
+
+/// Connections of one worker: one for its work, one for its heartbeat.
+const CONNECTIONS: usize = 2;
+/// Heartbeats in the time for which one counts.
+const BEATS: u32 = 6;
+
+/// A worker, its last heartbeat, and its chunk.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Worker {
+    /// Its name.
+    pub worker: String,
+    /// Seconds since its last heartbeat.
+    pub beat_s: f64,
+    /// The chunk that it has.
+    pub chunk: Option<usize>,
+    /// For how long it has had it, seconds.
+    pub chunk_s: Option<f64>,
+}
+
+/// The state of a run in the queue, for people.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Seen {
+    /// Chunks that no worker has.
+    pub open: usize,
+    /// Chunks that workers have.
+    pub running: usize,
+    /// Finished chunks.
+    pub done: usize,
+    /// Chunks that were given up, with the reasons.
+    pub dead: Vec<(usize, String)>,
+    /// How often chunks were tried again, by reason.
+    pub retries: Vec<(String, i64)>,
+    /// The workers.
+    pub workers: Vec<Worker>,
+}
+
+impl Queue {
+    /// A queue for the run of a folder's plan, without a worker: to look at it.
+    ///
+    /// # Errors
+    /// When the database cannot be used, or has a run of that name with another plan.
+    pub fn open(database: Database, folder: &Path, plan: &Plan) -> Result<Self, QueueError> {
+        let pool = Arc::new(Pool::new(database, CONNECTIONS));
+        prepare(&pool, &TABLES)?;
+        let queue = Self {
+            pool,
+            run: plan.run.clone(),
+            worker: String::new(),
+            folder: folder.to_owned(),
+            lease: crate::FRESH,
+            beating: None,
+        };
+        queue.enter(plan)?;
+        Ok(queue)
+    }
+
+    /// Joins the workers. A worker without a heartbeat for as long as `lease` loses its chunk.
+    ///
+    /// # Errors
+    /// When the database cannot be used.
+    pub fn join(mut self, worker: &str, lease: Duration) -> Result<Self, QueueError> {
+        self.worker = worker.to_owned();
+        self.lease = lease;
+        beat(&self.pool, &self.run, worker)?;
+        let (end, ended) = mpsc::channel();
+        let (pool, run, name) = (Arc::clone(&self.pool), self.run.clone(), worker.to_owned());
+        let beats = move || {
+            while ended.recv_timeout(lease / BEATS) == Err(mpsc::RecvTimeoutError::Timeout) {
+                // The pool tries several times. If that fails, the next heartbeat follows.
+                let _ = beat(&pool, &run, &name);
+            }
+        };
+        let thread = thread::Builder::new().name("heartbeat".to_owned()).spawn(beats);
+        let thread = thread.map_err(QueueError::io("heartbeat", "start the thread"))?;
+        self.beating = Some((end, thread));
+        Ok(self)
+    }
+
+    /// Enters the run and its chunks, unless they are there.
+    fn enter(&self, plan: &Plan) -> Result<(), QueueError> {
+        let (chunks, hash) = (i32::try_from(plan.chunks()).unwrap_or(i32::MAX), plan.hash());
+        let entered = self.pool.with("enter the run", |connection| {
+            let sql = "WITH new AS (INSERT INTO wayword_queue.runs (run, plan, chunks) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING RETURNING run)
+                       INSERT INTO wayword_queue.chunks (run, chunk) SELECT new.run, n FROM new, generate_series(0, $3 - 1) AS n";
+            connection.rows(sql, &[&self.run, &hash, &chunks])?;
+            let rows = connection.rows("SELECT plan FROM wayword_queue.runs WHERE run = $1", &[&self.run])?;
+            rows.first().map(|row| row.try_get::<_, String>(0)).transpose()
+        })?;
+        match entered {
+            Some(plan) if plan == hash => Ok(()),
+            _ => Err(QueueError::Broken {
+                path: crate::PLAN.into(),
+                problem: format!("the database has a run {} with another plan", self.run),
+            }),
+        }
+    }
+
+    fn changed(
+        &self,
+        doing: &'static str,
+        sql: &'static str,
+        claimed: Claimed,
+        rest: &[&(dyn wayword_database::postgres::types::ToSql + Sync)],
+    ) -> Result<bool, QueueError> {
+        let chunk = number(claimed.chunk);
+        let mut values: Vec<&(dyn wayword_database::postgres::types::ToSql + Sync)> =
+            vec![&self.run, &chunk, &claimed.epoch];
+        values.extend(rest);
+        let changed = self.pool.with(doing, |connection| {
+            let statement = connection.prepared(sql)?;
+            connection.client().execute(&statement, &values)
+        })?;
+        Ok(changed == 1)
+    }
+
+    /// The state of the run.
+    ///
+    /// # Errors
+    /// When the database cannot be used.
+    pub fn look(&self) -> Result<Seen, QueueError> {
+        Ok(self.pool.with("look at the run", |connection| {
+            let mut seen = Seen::default();
+            let sql = "SELECT state, count(*) FROM wayword_queue.chunks WHERE run = $1 GROUP BY state";
+            for row in connection.rows(sql, &[&self.run])? {
+                let count = usize::try_from(row.try_get::<_, i64>(1)?).unwrap_or(0);
+                match row.try_get::<_, &str>(0)? {
+                    "open" => seen.open = count,
+                    "running" => seen.running = count,
+                    "done" => seen.done = count,
+                    _ => {}
+                }
+            }
+            let sql = "SELECT chunk, coalesce(reason, '') FROM wayword_queue.chunks WHERE run = $1 AND state = 'dead' ORDER BY chunk";
+            for row in connection.rows(sql, &[&self.run])? {
+                seen.dead.push((place(row.try_get(0)?), row.try_get(1)?));
+            }
+            let sql = "SELECT reason, sum(retries)::bigint FROM wayword_queue.chunks WHERE run = $1 AND retries > 0 AND reason IS NOT NULL GROUP BY 1 ORDER BY 1";
+            for row in connection.rows(sql, &[&self.run])? {
+                seen.retries.push((row.try_get(0)?, row.try_get(1)?));
+            }
+            let sql = "SELECT w.worker, extract(epoch FROM now() - w.beat)::float8, c.chunk, extract(epoch FROM now() - c.since)::float8
+                       FROM wayword_queue.workers AS w
+                       LEFT JOIN wayword_queue.chunks AS c ON c.run = w.run AND c.worker = w.worker AND c.state = 'running'
+                       WHERE w.run = $1 ORDER BY w.worker";
+            for row in connection.rows(sql, &[&self.run])? {
+                let chunk: Option<i32> = row.try_get(2)?;
+                seen.workers.push(Worker {
+                    worker: row.try_get(0)?,
+                    beat_s: row.try_get(1)?,
+                    chunk: chunk.map(place),
+                    chunk_s: row.try_get(3)?,
+                });
+            }
+            Ok(seen)
+        })?)
+    }
+
+    /// Writes missing marks of finished chunks: a worker can be killed after it has reported the chunk and before it writes
+    /// the mark. Returns how many.
+    ///
+    /// # Errors
+    /// When the database cannot be used or a mark cannot be written.
+    pub fn mark(&self) -> Result<usize, QueueError> {
+        let kept: Vec<String> = self.pool.with("ask for the finished chunks", |connection| {
+            let sql = "SELECT done FROM wayword_queue.chunks WHERE run = $1 AND state = 'done' AND done IS NOT NULL";
+            connection.rows(sql, &[&self.run])?.iter().map(|row| row.try_get(0)).collect()
+        })?;
+        let mut marked = 0;
+        for kept in kept {
+            let done: Done = serde_json::from_str(&kept).map_err(|error| QueueError::Broken {
+                path: crate::PLAN.into(),
+                problem: format!("the database has a result that cannot be read: {error}"),
+            })?;
+            if !crate::done_path(&self.folder, done.chunk).exists() {
+                marked += usize::from(done.put(&self.folder)?);
+            }
+        }
+        Ok(marked)
+    }
+
+    /// The chunks with failed items, or given up, for a reason that contains the text `reason`.
+    ///
+    /// # Errors
+    /// When the database cannot be used or a mark cannot be read.
+    pub fn failing(&self, plan: &Plan, reason: &str) -> Result<Vec<usize>, QueueError> {
+        let mut failing = failing(&self.folder, plan, reason)?;
+        // The reason why a chunk was given up is only in the database.
+        failing.extend(self.look()?.dead.into_iter().filter(|(_, why)| why.contains(reason)).map(|(chunk, _)| chunk));
+        failing.sort_unstable();
+        failing.dedup();
+        Ok(failing)
+    }
+
+    /// Makes chunks open again.
+    ///
+    /// # Errors
+    /// When the database cannot be used or a mark cannot be removed.
+    pub fn reopen(&self, chunks: &[usize]) -> Result<(), QueueError> {
+        reopen(&self.folder, chunks)?;
+        let numbers: Vec<i32> = chunks.iter().map(|chunk| number(*chunk)).collect();
+        self.pool.with("make chunks open again", |connection| {
+            let sql = "UPDATE wayword_queue.chunks SET state = 'open', tries = 0, done = NULL
+                       WHERE run = $1 AND chunk = ANY($2) AND state IN ('done', 'dead')";
+            connection.rows(sql, &[&self.run, &numbers])
+        })?;
+        Ok(())
+    }
+}
+
+fn number(chunk: usize) -> i32 {
+    i32::try_from(chunk).unwrap_or(i32::MAX)
+}
+
+fn place(chunk: i32) -> usize {
+    usize::try_from(chunk).unwrap_or(0)
+}
+
+fn beat(pool: &Pool, run: &str, worker: &str) -> Result<(), QueueError> {
+    pool.with("give a sign of life", |connection| connection.rows(BEAT, &[&run, &worker]))?;
+    Ok(())
+}
+
+impl Board for Queue {
+    fn take(&self) -> Result<Option<Claimed>, QueueError> {
+        let lease_s = self.lease.as_secs_f64();
+        let taken = self.pool.with("take a chunk", |connection| {
+            // A worker has one chunk at a time. If it has one, the answer to its claim was lost with the connection.
+            let mut rows = connection.rows(MINE, &[&self.run, &self.worker])?;
+            if rows.is_empty() {
+                connection.rows(BURY, &[&self.run, &TRIES, &lease_s])?;
+                rows = connection.rows(CLAIM, &[&self.run, &self.worker, &lease_s, &TRIES])?;
+            }
+            rows.first().map(|row| Ok((row.try_get::<_, i32>(0)?, row.try_get::<_, i64>(1)?))).transpose()
+        })?;
+        Ok(taken.map(|(chunk, epoch)| Claimed { chunk: place(chunk), epoch }))
+    }
+
+    fn complete(&self, claimed: Claimed, done: &Done) -> Result<bool, QueueError> {
+        let kept = serde_json::to_string(done).unwrap_or_default();
+        if self.changed("complete a chunk", COMPLETE, claimed, &[&kept])? {
+            done.put(&self.folder)?;
+            return Ok(true);
+        }
+        // Perhaps the first try was carried out, and its answer lost.
+        let chunk = number(claimed.chunk);
+        let found = self
+            .pool
+            .with("ask for a chunk", |connection| connection.rows(IS_DONE, &[&self.run, &chunk, &claimed.epoch]))?;
+        if found.is_empty() {
+            return Ok(false);
+        }
+        done.put(&self.folder)?;
+        Ok(true)
+    }
+
+    fn hand_back(&self, claimed: Claimed) -> Result<(), QueueError> {
+        self.changed("hand a chunk back", HAND_BACK, claimed, &[]).map(drop)
+    }
+
+    fn give_up(&self, claimed: Claimed, reason: &str) -> Result<(), QueueError> {
+        self.changed("give a chunk up", GIVE_UP, claimed, &[&TRIES, &reason]).map(drop)
+    }
+
+    fn left(&self) -> Result<Left, QueueError> {
+        let rows = self.pool.with("ask what is left", |connection| {
+            let sql = "SELECT count(*) FILTER (WHERE state = 'open'), count(*) FILTER (WHERE state = 'running')
+                       FROM wayword_queue.chunks WHERE run = $1 AND state IN ('open', 'running')";
+            let rows = connection.rows(sql, &[&self.run])?;
+            rows.first().map(|row| Ok((row.try_get::<_, i64>(0)?, row.try_get::<_, i64>(1)?))).transpose()
+        })?;
+        let (open, running) = rows.unwrap_or_default();
+        let count = |count: i64| usize::try_from(count).unwrap_or(0);
+        Ok(Left { open: count(open), running: count(running) })
+    }
+}
+
+impl Drop for Queue {
+    fn drop(&mut self) {
+        let Some((end, thread)) = self.beating.take() else { return };
+        drop(end);
+        let _ = thread.join();
+        let _ = self.pool.with("leave", |connection| {
+            connection
+                .rows("DELETE FROM wayword_queue.workers WHERE run = $1 AND worker = $2", &[&self.run, &self.worker])
+        });
+    }
+}

@@ -1,0 +1,88 @@
+//! Cuts a text into parts that are short enough for a model to read: a CLIP cuts off the end of a longer text.
+
+use wayword_language::{
+    reading::clauses,
+    text::{Token, tokens},
+};
+
+/// Cuts a text into its sentences. A sentence that is too long for the model, as `holds` judges, is cut between clauses into
+/// pieces, each with as many clauses as the model can read. A clause that is too long by itself stays whole.
+///
+/// # Errors
+/// When `holds` fails.
+pub(super) fn parts<E>(text: &str, holds: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<&str>, E> {
+    let tokens = tokens(text);
+    let mut parts = Vec::new();
+    for sentence in tokens.split_inclusive(Token::ends_sentence) {
+        let first = sentence.iter().find(|token| token.is_word());
+        let Some((first, last)) = first.zip(sentence.last()) else { continue };
+        let whole = &text[first.span[0]..last.span[1]];
+        if holds(whole)? {
+            parts.push(whole);
+        } else {
+            parts.extend(pieces(text, sentence, &holds)?);
+        }
+    }
+    Ok(parts)
+}
+
+fn pieces<'a, E>(
+    text: &'a str,
+    sentence: &[Token],
+    holds: &impl Fn(&str) -> Result<bool, E>,
+) -> Result<Vec<&'a str>, E> {
+    let numbers = clauses(sentence);
+    let starts: Vec<usize> = (0..sentence.len()).filter(|at| *at == 0 || numbers[*at] != numbers[*at - 1]).collect();
+    let mut pieces = Vec::new();
+    let (mut from, mut to) = (0, 0);
+    for end in starts.into_iter().skip(1).chain([sentence.len()]) {
+        let longer = told(text, &sentence[from..end]);
+        if to > from && longer.map_or(Ok(false), |longer| Ok(!holds(longer)?))? {
+            pieces.extend(told(text, &sentence[from..to]));
+            from = to;
+        }
+        to = end;
+    }
+    pieces.extend(told(text, &sentence[from..to]));
+    Ok(pieces)
+}
+
+/// The text of some tokens from their first word to their last; `None` if there is no word.
+fn told<'a>(text: &'a str, tokens: &[Token]) -> Option<&'a str> {
+    let mut words = tokens.iter().filter(|token| token.is_word());
+    let first = words.next()?;
+    Some(&text[first.span[0]..words.next_back().unwrap_or(first).span[1]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    fn parts_within(text: &str, most: usize) -> Vec<&str> {
+        let found: Result<_, Infallible> = parts(text, |part| Ok(part.len() <= most));
+        found.unwrap_or_default()
+    }
+
+    #[test]
+    fn sentences_that_can_be_read_stay_whole() {
+        let text = "Go past the sofa, then turn left. Stop!  ... Wait by approx. two chairs";
+        assert_eq!(
+            parts_within(text, 99),
+            ["Go past the sofa, then turn left.", "Stop!", "Wait by approx. two chairs"]
+        );
+    }
+
+    #[test]
+    fn a_long_sentence_is_cut_between_clauses_as_late_as_can_be() {
+        let text = "Go past the sofa, turn left, and walk on to the door of the bathroom.";
+        assert_eq!(parts_within(text, 30), ["Go past the sofa, turn left", "and walk on to the door of the bathroom"]);
+        assert_eq!(parts_within(text, 1), ["Go past the sofa", "turn left", "and walk on to the door of the bathroom"]);
+    }
+
+    #[test]
+    fn split_into_parts_skips_punctuation_alone() {
+        assert!(parts_within("... , ! -", 99).is_empty() && parts_within("", 99).is_empty());
+        assert_eq!(parts_within("(,) Stop", 2), ["Stop"]);
+    }
+}

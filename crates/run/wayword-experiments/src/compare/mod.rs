@@ -1,0 +1,255 @@
+//! `wayword compare`: agents walk by the texts of several sets, and their success shows which texts guide best.
+
+mod agents;
+pub mod args;
+mod estimate;
+mod grounders;
+mod kept;
+mod make;
+mod outputs;
+mod page;
+mod score;
+mod sets;
+mod tools;
+
+use crate::{compare::args::Compare, demands::Demands};
+use agents::Agent;
+use estimate::Estimate;
+use grounders::Grounders;
+use make::Crew;
+use outputs::Gathered;
+use score::Judge;
+use sets::Item;
+use std::{fs, path::Path};
+use tools::{HeldBack, Toolbox};
+use wayword_core::{Failure, ModelError, Recent};
+use wayword_navigation::{
+    WalkError,
+    directions::{ByModel, ByRules, Splitter},
+};
+use wayword_run::{
+    calls::Calls,
+    count::count,
+    error::{Error, Exit},
+    in_order::{cores, in_order},
+    interrupt,
+    losses::Losses,
+    output::Output,
+    plan::Models,
+    platforms::SCENES_KEPT,
+    run_folder as run,
+    run_folder::Journal,
+    settings::RULES,
+    settings_file as config,
+};
+
+pub(crate) use kept::Kept;
+pub use page::{is_comparison, write_of_folder};
+
+/// Names of the files in a comparison's folder, except `config.toml`.
+pub(crate) mod file {
+    /// The walks, one line each.
+    pub(crate) const WALKS: &str = "walks.jsonl";
+    /// The result.
+    pub(crate) const COMPARISON: &str = "comparison.json";
+    /// The success of each walk, one line each, for `robustness --compared`.
+    pub(crate) const FOLLOWED: &str = "followed.jsonl";
+    /// The tables.
+    pub(super) const MARKDOWN: &str = "comparison.md";
+    pub(super) const LATEX: &str = "comparison.tex";
+    /// The agents' trajectories as evaluators take them.
+    pub(super) const SUBMISSIONS: &str = "submissions";
+}
+
+/// The command gives up when this many items have failed and none was walked.
+const FRUITLESS: usize = 20;
+
+/// Items between two flushes to the disk.
+const FLUSH: usize = 16;
+
+/// Runs `wayword compare`: makes or continues the walks, writes tables and page, and prints the result.
+///
+/// # Errors
+/// When the flags do not fit together, a set cannot be read, or no item could be walked.
+pub fn compared(args: &Compare, output: &Output) -> Result<Exit, Error> {
+    if let Some(file) = &args.calibration {
+        let problem = format!(
+            "--calibration {} has no effect: no agent judges claims by what labels do not list",
+            file.display()
+        );
+        return Err(Error::usage(problem, "leave it out; `wayword check` and `wayword generate` take it"));
+    }
+    kept::refuse_flags_of_tools(args)?;
+    let job = args.asked().or(config::calls(args.config.as_deref())?).job()?;
+    let kept = Kept::of(args, &job.settings)?;
+    let models = Models::of(&job)?;
+    tools::refuse_unknown_price(&kept, &models)?;
+    if !args.dry_run {
+        Calls::ready(&job, output)?;
+    }
+    let platform = kept.platform()?;
+    let demands = Demands::new(platform.as_ref());
+    let (items, sizes, of_episodes) = sets::load(&kept, platform.as_ref(), &demands)?;
+    let judge = Judge::new(&kept, &items, &demands, args.rule.map(Into::into))?;
+    if let Some(item) = judge.without_object.filter(|_| args.rule.is_none()) {
+        output.say(format_args!(
+            "success is judged by distance, because item {item} names no object whose place is known"
+        ));
+    }
+    let agents = Agent::all(&kept, args.prior.unwrap_or_default());
+    if args.dry_run {
+        let estimate = Estimate::of(&kept, &job.settings, &items, &agents, (platform.as_ref(), &models))?;
+        output.data(&estimate, &estimate);
+        return Ok(Exit::Done);
+    }
+    if kept.tools.is_some() {
+        tools::warn_of_long_texts(&items, output);
+    }
+    let grounders = Grounders::open(&kept, output)?;
+    // A new folder is made after the models are loaded, so that a model that does not fit into the memory leaves none.
+    run::refuse_file(&args.out)?;
+    let begun = run::is_begun(&args.out).then(|| begin(&args.out, &kept)).transpose()?;
+    let id = run::id_of(&args.out, "compare")?;
+    let calls = models.open(&id, output)?;
+    let grounders = grounders.with_detector(&kept, calls.as_ref())?;
+    let splitter = splitter(&kept.split, calls.as_ref())?;
+    let _held = begun.map_or_else(|| begin(&args.out, &kept), Ok)?;
+    if calls.is_some() {
+        run::keep_id(&args.out, &id)?;
+    }
+    let toolbox = Toolbox::open(&kept, &job.settings, (calls.as_ref(), &models, items.len()), platform.as_ref())?;
+    let surveys = Recent::new(SCENES_KEPT);
+    let crew = Crew {
+        platform: platform.as_ref(),
+        grounders: &grounders,
+        splitter: splitter.as_ref(),
+        agents: &agents,
+        toolbox: toolbox.as_ref(),
+        surveys: &surveys,
+        seed: kept.seed,
+    };
+    let failed = walk_all(&args.out, &items, &crew, calls.as_ref(), output)?;
+    if let Some(calls) = &calls {
+        calls.record()?;
+        output.say(format_args!("models: {}", calls.spent()));
+    }
+    let gathered = Gathered::of(&args.out, &judge)?;
+    if gathered.results.extent().0 == 0 {
+        let problem = "no item could be walked: a model failed on every one of them";
+        return Err(Error::usage(problem, "see the reasons above; give the same command again to try again"));
+    }
+    let sets = sets::described(&kept, &items, &sizes, |item| gathered.results.has(item));
+    let (resamples, results) = (args.resamples as usize, &gathered.results);
+    let comparison = score::comparison(&kept, &crew, sets, &judge, results, (resamples, failed));
+    outputs::write(&args.out, &comparison, &gathered)?;
+    let page = args.out.join(run::file::REPORT);
+    page::write(&args.out, &page, &comparison, &judge, platform.as_ref(), args.replays)?;
+    output.data(&comparison, wayword_report::pages::comparison::screen(&comparison));
+    output.say(format_args!("walks, tables and page: {}", args.out.display()));
+    let walked = gathered.results.extent().0;
+    if walked < of_episodes {
+        let of = count(of_episodes, "item");
+        output
+            .say(format_args!("the submissions cover {walked} of {of}; score them with `wayword evaluate --partial`"));
+    }
+    Ok(if failed == 0 { Exit::Done } else { Exit::WithLoss })
+}
+
+/// Makes or continues the folder, and locks it against other processes.
+fn begin(folder: &Path, kept: &Kept) -> Result<run::Held, Error> {
+    fs::create_dir_all(folder).map_err(Error::io(folder, "make the folder"))?;
+    let held = run::hold(folder)?;
+    run::keep_config(folder, kept)?;
+    Ok(held)
+}
+
+/// Opens the splitter that takes instructions apart into phrases.
+fn splitter(name: &str, calls: Option<&Calls>) -> Result<Box<dyn Splitter>, Error> {
+    match calls.filter(|_| name != RULES) {
+        Some(calls) => Ok(Box::new(ByModel::new(calls.model(name)?))),
+        None => Ok(Box::new(ByRules)),
+    }
+}
+
+/// Makes the walks that are not in the folder yet. Returns how many items failed.
+fn walk_all(
+    folder: &Path,
+    items: &[Item],
+    crew: &Crew<'_>,
+    calls: Option<&Calls>,
+    output: &Output,
+) -> Result<usize, Error> {
+    let mut walks = Journal::open(&folder.join(file::WALKS), key_of)?;
+    let is_done = |item: &&Item| {
+        let mut names = crew.names(item).into_iter();
+        names.all(|(agent, set, text_index)| walks.has(&key(&agent, &set, &item.episode.id, text_index as u64)))
+    };
+    let left: Vec<&Item> = items.iter().filter(|item| !is_done(item)).collect();
+    if left.len() < items.len() {
+        output.say(format_args!("continuing: {} of {} done", items.len() - left.len(), count(items.len(), "item")));
+    }
+    let _graceful = interrupt::finish_first(calls);
+    let bar = output.progress(items.len(), "items");
+    bar.set_position((items.len() - left.len()) as u64);
+    bar.reset_eta();
+    let (mut walked, mut failed, mut unflushed) = (0, 0, 0);
+    let mut losses = Losses::default();
+    let mut held_back = HeldBack::default();
+    let workers = calls.map_or_else(cores, Calls::workers);
+    in_order(
+        &left,
+        workers,
+        |item| crew.walks(item),
+        |item, made| {
+            bar.inc(1);
+            let is_gone = losses.are_enough(made.as_ref().err().and_then(loss));
+            match made {
+                Ok(made) => {
+                    walked += 1;
+                    held_back.take(made)?.iter().flatten().try_for_each(|walk| walks.append(walk))?;
+                }
+                // The service is gone: the other items would wait for it too.
+                Err(error) if is_gone => return Err(error.into()),
+                Err(error) if is_of_item(&error) && walked == 0 && failed + 1 == FRUITLESS => return Err(error.into()),
+                Err(error) if is_of_item(&error) => {
+                    failed += 1;
+                    output.say(format_args!("item {}: {error}", item.episode.id));
+                }
+                Err(error) => return Err(error.into()),
+            }
+            unflushed += 1;
+            if unflushed == FLUSH {
+                walks.sync()?;
+                unflushed = 0;
+            }
+            interrupt::check().map(|()| true)
+        },
+    )?;
+    held_back.rest().iter().flatten().try_for_each(|walk| walks.append(walk))?;
+    walks.sync()?;
+    bar.finish_and_clear();
+    Ok(failed)
+}
+
+/// The kind of the failure, if a model failed; `None` for other errors.
+fn loss(error: &WalkError) -> Option<Failure> {
+    match error {
+        WalkError::Model(error) => Some(error.failure()),
+        _ => None,
+    }
+}
+
+/// Whether a failure concerns one item only, so that the others may still be walked.
+fn is_of_item(error: &WalkError) -> bool {
+    matches!(error, WalkError::Model(ModelError::Failed { .. } | ModelError::Lost { .. }))
+}
+
+/// The key of a walk's line.
+fn key_of(line: &serde_json::Value) -> Option<String> {
+    let text = |field: &str| line.get(field)?.as_str();
+    Some(key(text("agent")?, text("set")?, text("item")?, line.get("text_index")?.as_u64()?))
+}
+
+fn key(agent: &str, set: &str, item: &str, text_index: u64) -> String {
+    format!("{agent}\n{set}\n{item}\n{text_index}")
+}

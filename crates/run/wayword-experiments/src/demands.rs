@@ -1,0 +1,47 @@
+//! For each episode, the conditions by which a trajectory is scored: the reference path, the target, and from where it is visible.
+
+use std::sync::Arc;
+use wayword_core::{Platform, SceneId};
+use wayword_formats::Episode;
+use wayword_metrics::{Atlas, Demand, Distances};
+use wayword_run::error::Error;
+
+/// Goals nearer to each other than this count as one goal, metres: R2R counts an agent there as arrived.
+pub(crate) const SAME_GOAL_M: f64 = 3.0;
+
+/// Makes the demands of a platform's episodes. It computes the distances of each scene once.
+pub struct Demands<'a> {
+    platform: &'a dyn Platform,
+    atlas: Atlas<'a>,
+}
+
+impl<'a> Demands<'a> {
+    /// Starts without any distances.
+    #[must_use]
+    pub fn new(platform: &'a dyn Platform) -> Self {
+        Self { platform, atlas: Atlas::new(platform) }
+    }
+
+    /// The distances of a scene.
+    ///
+    /// # Errors
+    /// When the scene cannot be read.
+    pub fn distances(&self, scene: &SceneId) -> Result<Arc<Distances>, Error> {
+        Ok(self.atlas.scene(scene)?)
+    }
+
+    /// The demand of an episode, and the distances of its scene.
+    ///
+    /// # Errors
+    /// When the scene cannot be read.
+    pub fn of(&self, episode: &Episode) -> Result<(Arc<Distances>, Demand), Error> {
+        let distances = self.distances(&episode.scene)?;
+        let visible = episode.target_object.as_ref().map(|object| self.platform.visible_from(&episode.scene, object));
+        let demand = Demand {
+            reference: episode.viewpoints.clone(),
+            object: episode.target_object.clone(),
+            visible_from: visible.transpose()?.flatten(),
+        };
+        Ok((distances, demand))
+    }
+}

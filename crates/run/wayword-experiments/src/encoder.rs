@@ -1,0 +1,97 @@
+//! Opens sentence encoders by name, and turns texts into vectors with them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{ModelError, TextEncoder};
+use wayword_metrics::Words;
+use wayword_run::{error::Error, interrupt, output::Output};
+
+/// Number of texts that the encoder gets at once.
+const BATCH: usize = 128;
+
+/// Opens an encoder by its name. `words` counts words, without a model.
+pub fn encoder(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+    if name == "words" { Ok(Box::new(Words)) } else { in_process(name) }
+}
+
+#[cfg(feature = "local")]
+fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+    use wayword_local::{Device, Hub, HubConfig, ModelName, Needs, Precision, SentenceEncoder};
+    let needs = Needs::default()
+        .weights()
+        .required(&["config.json", "tokenizer.json"])
+        .optional(&["1_Pooling/config.json", "sentence_bert_config.json"]);
+    let folder = Hub::new(HubConfig::from_env()?)?.folder(&ModelName::parse(name)?, &needs, &())?;
+    Ok(Box::new(SentenceEncoder::load(name, &folder.path, &Device::cpu(), Precision::F32)?))
+}
+
+#[cfg(not(feature = "local"))]
+fn in_process(name: &str) -> Result<Box<dyn TextEncoder>, Error> {
+    Err(Error::usage(
+        format!("{name}: this build runs no models in process"),
+        "build it with `cargo build --release --features full`, or count words with `--encoder words`",
+    ))
+}
+
+/// Encodes texts, equal ones once, and gives the vector of each.
+pub fn vectors<'a>(
+    encoder: &dyn TextEncoder,
+    texts: impl Iterator<Item = &'a str>,
+    output: &Output,
+) -> Result<BTreeMap<&'a str, Vec<f32>>, Error> {
+    let texts: Vec<&str> = texts.collect::<BTreeSet<_>>().into_iter().collect();
+    let bar = output.progress(texts.len(), "texts");
+    let mut vectors = BTreeMap::new();
+    let mut numbers = None;
+    for batch in texts.chunks(BATCH) {
+        interrupt::check()?;
+        let found = encoder.encode(batch)?;
+        let expected = *numbers.get_or_insert_with(|| found.first().map_or(0, Vec::len));
+        let fits = |vector: &Vec<f32>| vector.len() == expected && vector.iter().all(|number| number.is_finite());
+        if found.len() != batch.len() || !found.iter().all(fits) {
+            let reason = "it did not give one vector of finite numbers for each text".to_owned();
+            return Err(ModelError::Failed { model: encoder.name().to_owned(), reason }.into());
+        }
+        vectors.extend(batch.iter().copied().zip(found));
+        bar.inc(batch.len() as u64);
+    }
+    bar.finish_and_clear();
+    Ok(vectors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Always gives the same vector, and records the texts that it was given.
+    struct Fixed(Vec<f32>, Mutex<Vec<String>>);
+
+    impl TextEncoder for Fixed {
+        fn name(&self) -> &str {
+            "fixed"
+        }
+
+        fn encode(&self, texts: &[&str]) -> Result<Vec<Vec<f32>>, ModelError> {
+            self.1.lock().unwrap().extend(texts.iter().map(|text| (*text).to_owned()));
+            Ok(texts.iter().skip(usize::from(self.0.is_empty())).map(|_| self.0.clone()).collect())
+        }
+    }
+
+    fn encode_with(vector: Vec<f32>) -> Result<Vec<String>, Error> {
+        let encoder = Fixed(vector, Mutex::default());
+        vectors(&encoder, ["b", "a", "b", "a"].into_iter(), &Output::new(false, true))?;
+        Ok(encoder.1.into_inner().unwrap())
+    }
+
+    #[test]
+    fn a_text_is_encoded_once() {
+        assert_eq!(encode_with(vec![1.0]).unwrap(), ["a", "b"]);
+    }
+
+    #[test]
+    fn an_encoder_that_gives_no_vectors_is_refused() {
+        for wrong in [vec![f32::NAN], Vec::new()] {
+            assert!(encode_with(wrong).unwrap_err().to_string().contains("fixed"));
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Reads episodes of any format as paths over the viewpoint graph, for commands in which agents walk.
+
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::{Platform, SceneId, ViewpointGraph, ViewpointId};
+use wayword_formats::{Episode, Format, jsonl};
+use wayword_run::error::Error;
+
+/// Reads the episodes of a file. A path whose frames lie between viewpoints is replaced by the viewpoints nearest to its frames, by
+/// straight line. Two of these in a row need not be joined by an edge, and one may lie behind a wall.
+///
+/// # Errors
+/// When the file cannot be read, a scene is unknown, or an episode has neither viewpoints nor frames.
+pub fn read(file: &Path, platform: &dyn Platform) -> Result<Vec<Episode>, Error> {
+    let episodes = match wayword_formats::detect(file)? {
+        Format::Wayword => {
+            let records = jsonl::read(file)?;
+            let mut episodes = jsonl::episodes(&records);
+            let paths: BTreeMap<&str, &wayword_core::Path> =
+                records.iter().map(|record| (record.path.id.as_str(), &record.path)).collect();
+            for episode in episodes.iter_mut().filter(|episode| episode.viewpoints.is_empty()) {
+                if let Some(path) = paths.get(episode.id.as_str()).filter(|path| path.motion.is_known()) {
+                    episode.viewpoints = nearest_along(platform, path)?;
+                }
+            }
+            episodes
+        }
+        format => format.read(file)?,
+    };
+    match episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
+        Some(blind) => Err(Error::usage(
+            format!("{}: episode {} names no viewpoints, but agents need them", file.display(), blind.id),
+            "give an R2R, REVERIE, RxR or Wayword file whose paths name viewpoints or have poses",
+        )),
+        None => Ok(episodes),
+    }
+}
+
+/// The name of an episode's path. Intervals are clustered by it, because items on one path are not independent.
+pub fn cluster(episode: &Episode) -> String {
+    path_name(&episode.scene, &episode.path_id)
+}
+
+/// The name of a path, unique over all scenes.
+pub fn path_name(scene: &SceneId, path_id: &str) -> String {
+    format!("{scene}/{path_id}")
+}
+
+/// The viewpoints nearest to the frames of a path, without repeats in a row.
+///
+/// # Errors
+/// When its scene is unknown.
+pub(crate) fn nearest_along(platform: &dyn Platform, path: &wayword_core::Path) -> Result<Vec<ViewpointId>, Error> {
+    let graph = platform.graph(&path.scene)?;
+    let mut viewpoints: Vec<ViewpointId> =
+        path.frames.iter().filter_map(|frame| nearest(&graph, frame.pose.position)).collect();
+    viewpoints.dedup();
+    Ok(viewpoints)
+}
+
+fn nearest(graph: &ViewpointGraph, to: wayword_core::DVec3) -> Option<ViewpointId> {
+    let off_m = |id: &&ViewpointId| graph.position(id).map_or(f64::INFINITY, |position| position.distance(to));
+    graph.viewpoints().min_by(|a, b| off_m(a).total_cmp(&off_m(b))).cloned()
+}

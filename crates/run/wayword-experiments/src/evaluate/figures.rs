@@ -1,0 +1,218 @@
+//! The figures of a submission, for the screen and as JSON: means over instructions, as the official evaluators give them, with
+//! bootstrap intervals.
+
+use super::Covered;
+use crate::{
+    evaluate::args::Evaluate,
+    judge::{LEVEL, Scores},
+};
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt,
+};
+use wayword_metrics::{Estimate, Metric, Rule};
+use wayword_run::count::count;
+
+/// Figures that depend on the rule of success; the others are the same under every rule.
+const BY_RULE: [Metric; 4] = [Metric::SuccessRate, Metric::OracleSuccessRate, Metric::Spl, Metric::Sdtw];
+
+/// How the intervals are drawn.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct Drawn {
+    pub(super) resamples: usize,
+    pub(super) seed: u64,
+}
+
+/// All figures of a submission.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    submission: String,
+    episodes: String,
+    instructions: usize,
+    items: usize,
+    paths: usize,
+    /// Instructions and items that the episodes have, with or without a trajectory.
+    of_instructions: usize,
+    of_items: usize,
+    /// Only this many items count, from the beginning of the episodes' file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limit: Option<u32>,
+    /// Trajectories for later items, which do not count.
+    left_out: usize,
+    /// Instructions for which an object was named.
+    objects_named: usize,
+    /// Confidence level of the intervals, which are clustered by path.
+    level: f64,
+    #[serde(flatten)]
+    drawn: Drawn,
+    rules: Vec<ByRule>,
+    /// Figures that do not depend on the rule of success.
+    whatever_the_rule: BTreeMap<Metric, Figure>,
+}
+
+/// The figures under one rule of success.
+#[derive(Debug, Serialize)]
+struct ByRule {
+    rule: Rule,
+    /// The rule in words.
+    words: &'static str,
+    figures: BTreeMap<Metric, Figure>,
+}
+
+/// A mean over instructions.
+#[derive(Debug, Serialize)]
+struct Figure {
+    #[serde(flatten)]
+    estimate: Estimate,
+    /// Instructions for which the figure cannot be computed. The mean leaves them out.
+    left_out: usize,
+}
+
+impl Report {
+    pub(super) fn new(args: &Evaluate, scores: &Scores, covered: Covered, rules: &[Rule], drawn: Drawn) -> Self {
+        let has_objects = scores.rows().iter().any(|row| row.score.grounding.is_some());
+        let by_rule = |rule: &Rule| ByRule {
+            rule: *rule,
+            words: words(*rule, has_objects),
+            figures: figures(scores, *rule, drawn, |metric| BY_RULE.contains(&metric)),
+        };
+        Self {
+            submission: args.submission.display().to_string(),
+            episodes: args.episodes.display().to_string(),
+            instructions: scores.rows().len(),
+            items: scores.items().collect::<BTreeSet<_>>().len(),
+            paths: scores.paths().collect::<BTreeSet<_>>().len(),
+            of_instructions: covered.instructions,
+            of_items: covered.items,
+            limit: args.limit,
+            left_out: covered.left_out,
+            objects_named: scores.rows().iter().filter(|row| row.names_object).count(),
+            level: LEVEL,
+            drawn,
+            rules: rules.iter().map(by_rule).collect(),
+            whatever_the_rule: figures(scores, Rule::Distance, drawn, |metric| !BY_RULE.contains(&metric)),
+        }
+    }
+}
+
+/// A rule of success in words. It is the official one for REVERIE if episodes have objects, and for R2R if not.
+fn words(rule: Rule, has_objects: bool) -> &'static str {
+    match (rule, has_objects) {
+        (Rule::Visible, _) => "the target is visible from the last viewpoint (REVERIE's official rule)",
+        (Rule::Distance, true) => {
+            "the last viewpoint is under 3 m from the goal (the lenient rule: on REVERIE not the official one)"
+        }
+        (Rule::Distance, false) => "the last viewpoint is under 3 m from the goal (R2R's official rule)",
+    }
+}
+
+/// The figures that at least one instruction has.
+fn figures(scores: &Scores, rule: Rule, drawn: Drawn, is_wanted: impl Fn(Metric) -> bool) -> BTreeMap<Metric, Figure> {
+    let figure = |metric: Metric| {
+        let estimate = scores.estimate(metric, rule, drawn.resamples, drawn.seed)?;
+        Some((metric, Figure { left_out: scores.rows().len() - estimate.values, estimate }))
+    };
+    Metric::ALL.into_iter().filter(|metric| is_wanted(*metric)).filter_map(figure).collect()
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}: {} of {} on {}",
+            self.submission,
+            count(self.instructions, "instruction"),
+            count(self.items, "item"),
+            count(self.paths, "path")
+        )?;
+        if self.instructions < self.of_instructions {
+            writeln!(
+                f,
+                "partial: {} of {} and {} of {} of {} are scored; the figures are of these only",
+                self.instructions,
+                count(self.of_instructions, "instruction"),
+                self.items,
+                count(self.of_items, "item"),
+                self.episodes
+            )?;
+        }
+        if let Some(limit) = self.limit {
+            writeln!(
+                f,
+                "only the first {} of {} count; left out, because they are for later items: {}",
+                count(u64::from(limit), "item"),
+                self.episodes,
+                count(self.left_out, "trajectory")
+            )?;
+        }
+        for ByRule { words, figures, .. } in &self.rules {
+            writeln!(f, "\nsuccess: {words}")?;
+            table(f, figures)?;
+        }
+        writeln!(f, "\nindependent of the rule of success")?;
+        table(f, &self.whatever_the_rule)?;
+        if self.whatever_the_rule.contains_key(&Metric::Rgs) && self.objects_named == 0 {
+            writeln!(f, "no trajectory names an object (predObjId), so RGS and RGSPL are 0")?;
+        }
+        write!(f, "\nmeans over instructions, with {:.0} % intervals, clustered by path", self.level * 100.0)
+    }
+}
+
+fn table(f: &mut fmt::Formatter<'_>, figures: &BTreeMap<Metric, Figure>) -> fmt::Result {
+    for (metric, Figure { estimate, left_out }) in figures {
+        let Estimate { mean, low, high, .. } = estimate;
+        let name = metric.short();
+        match metric {
+            Metric::NavigationErrorM | Metric::TrajectoryLengthM => {
+                write!(f, "  {name:<7} {mean:>7.2}     {low:.2} to {high:.2}")?;
+            }
+            _ => write!(f, "  {name:<7} {:>6.1} %    {:.1} to {:.1} %", mean * 100.0, low * 100.0, high * 100.0)?,
+        }
+        if *left_out > 0 {
+            let why =
+                if *metric == Metric::NavigationErrorM { "the goal cannot be reached" } else { "no object is known" };
+            write!(f, "   ({left_out} left out: {why})")?;
+        }
+        writeln!(f)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_metrics::{Outcome, Score};
+
+    fn score(navigation_error_m: Option<f64>) -> Score {
+        let nothing = Outcome { success: false, oracle_success: false, spl: 0.0, sdtw: 0.0 };
+        Score {
+            length_m: 2.0,
+            navigation_error_m,
+            oracle_error_m: navigation_error_m,
+            distance: nothing,
+            visible: None,
+            grounding: None,
+            ndtw: 0.5,
+            cls: 0.5,
+        }
+    }
+
+    #[test]
+    fn compute_figures_leaves_missing_values_out_of_the_mean() {
+        let all = Scores::of_one_path([Some(4.0), None, Some(6.0)].map(score).into());
+        let found = figures(&all, Rule::Distance, Drawn { resamples: 100, seed: 0 }, |_| true);
+        let error = &found[&Metric::NavigationErrorM];
+        assert!((error.estimate.mean - 5.0).abs() < 1e-12);
+        assert_eq!((error.left_out, found[&Metric::SuccessRate].left_out), (1, 0));
+        assert!(!found.contains_key(&Metric::Rgs));
+        struct Shown(BTreeMap<Metric, Figure>);
+        impl fmt::Display for Shown {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                table(f, &self.0)
+            }
+        }
+        let shown = Shown(found).to_string();
+        assert!(shown.contains("5.00     5.00 to 5.00   (1 left out: the goal cannot be reached)"), "{shown}");
+    }
+}

@@ -1,0 +1,111 @@
+//! `wayword evaluate`: scores a file of trajectories as the official evaluators of R2R and REVERIE do.
+
+pub mod args;
+mod figures;
+mod refusal;
+
+use crate::{
+    episodes,
+    evaluate::args::Evaluate as Args,
+    judge::{Judge, Scores},
+};
+use figures::{Drawn, Report};
+use refusal::{Refusal, no_submission};
+use std::{collections::BTreeSet, fs, path::Path};
+use wayword_formats::{
+    Episode,
+    submission::{self, instr_id},
+};
+use wayword_metrics::Rule;
+use wayword_run::{
+    error::{Error, Exit},
+    output::Output,
+    platforms,
+    run_folder::write_whole,
+};
+
+/// How much of the episodes a submission was scored on.
+#[derive(Clone, Copy)]
+struct Covered {
+    /// All instructions, with or without a trajectory.
+    instructions: usize,
+    /// All items.
+    items: usize,
+    /// Trajectories for items beyond the limit.
+    left_out: usize,
+}
+
+pub fn run(args: &Args, output: &Output) -> Result<Exit, Error> {
+    refuse_to_overwrite(args)?;
+    let platform = platforms::open_at(args.platform.name(), (&args.platform).into())?;
+    let episodes = episodes::read(&args.episodes, platform.as_ref())?;
+    let limit = args.limit.map_or(usize::MAX, |limit| limit as usize).min(episodes.len());
+    let (episodes, beyond) = episodes.split_at(limit);
+    let reading = submission::read(&args.submission);
+    if let Some(error) = no_submission(&args.submission, &reading) {
+        return Err(error);
+    }
+    let judge = Judge::new(episodes, platform.as_ref())?;
+    let names = |episode: &Episode| (0..episode.instructions.len()).map(|place| instr_id(episode, place)).collect();
+    let beyond: BTreeSet<String> = beyond.iter().flat_map(|episode| -> Vec<String> { names(episode) }).collect();
+    let (scores, left_out) = match judge.score_all(&reading, &beyond, args.partial) {
+        Ok(scored) => scored,
+        Err(problems) => {
+            let refusal = Refusal::new(&args.submission, problems);
+            output.data(&refusal, &refusal);
+            return Err(refusal.into_error());
+        }
+    };
+    if scores.rows().is_empty() {
+        let problem = format!("{}: no instruction has a trajectory; nothing was scored", args.submission.display());
+        return Err(Error::usage(problem, "check that the submission and --episodes belong to the same split"));
+    }
+    let rules = rules(args, &scores)?;
+    if let Some(file) = &args.per_item {
+        write_each(file, &scores)?;
+    }
+    let drawn = Drawn { resamples: args.resamples as usize, seed: args.seed };
+    let covered = Covered { instructions: judge.instructions(), items: judge.items(), left_out };
+    let report = Report::new(args, &scores, covered, &rules, drawn);
+    output.data(&report, &report);
+    Ok(Exit::Done)
+}
+
+/// Refuses a `--per-item` file that is one of the inputs, under whatever name.
+fn refuse_to_overwrite(args: &Args) -> Result<(), Error> {
+    let Some(Ok(per_item)) = args.per_item.as_ref().map(fs::canonicalize) else {
+        // A file that does not exist yet is no input.
+        return Ok(());
+    };
+    for input in [&args.submission, &args.episodes] {
+        if fs::canonicalize(input).is_ok_and(|input| input == per_item) {
+            let problem = format!("--per-item would overwrite {}, which this command reads", input.display());
+            return Err(Error::usage(problem, "give --per-item another file name"));
+        }
+    }
+    Ok(())
+}
+
+/// The rules of success that are asked for and can be applied.
+fn rules(args: &Args, scores: &Scores) -> Result<Vec<Rule>, Error> {
+    let has_visible = scores.has(Rule::Visible);
+    match args.rule.map(Rule::from) {
+        Some(Rule::Visible) if !has_visible => Err(Error::usage(
+            format!("--rule visible: no item of {} names an object whose place is known", args.episodes.display()),
+            "judge by distance with --rule distance",
+        )),
+        Some(rule) => Ok(vec![rule]),
+        None if has_visible => Ok(vec![Rule::Visible, Rule::Distance]),
+        None => Ok(vec![Rule::Distance]),
+    }
+}
+
+fn write_each(file: &Path, scores: &Scores) -> Result<(), Error> {
+    let mut lines = String::new();
+    for line in scores.lines() {
+        let line = serde_json::to_string(&line).map_err(|error| Error::io(file, "write")(error.into()))?;
+        lines.push_str(&line);
+        lines.push('\n');
+    }
+    write_whole(file, &lines)
+}

@@ -1,0 +1,73 @@
+//! Reads the run that is tested for robustness: its settings, paths, styles and texts.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path as FilePath, PathBuf},
+};
+use wayword_core::Path;
+use wayword_formats::jsonl;
+use wayword_report::pages::robustness::results::Again;
+use wayword_run::{
+    error::Error,
+    run_folder::{WalkRecord, file, lines, settings_of},
+    settings::{Settings, TargetMode},
+    styles::{self, Measured},
+};
+
+/// A run: its settings, paths, styles and texts.
+pub(super) struct Base {
+    pub(super) folder: PathBuf,
+    /// Its settings, with one text for each path and style.
+    pub(super) settings: Settings,
+    pub(super) paths: Vec<Path>,
+    pub(super) styles: Vec<Measured>,
+    /// Its first texts, by path and style.
+    texts: BTreeMap<(String, String), String>,
+}
+
+impl Base {
+    /// Reads a run folder.
+    ///
+    /// # Errors
+    /// When it cannot be read, a style is not known, or no path is left.
+    pub(super) fn read(folder: &FilePath, limit: Option<u32>) -> Result<Self, Error> {
+        let settings = Settings { per_path: 1, ..settings_of(folder)? };
+        let styles = styles::find(&settings.style)?;
+        let most = limit.map_or(usize::MAX, |limit| limit as usize);
+        let mut paths: Vec<Path> = Vec::new();
+        lines::each(&folder.join(file::WALKS), |line| {
+            if paths.len() < most {
+                let WalkRecord { mut path, .. } = line.parse()?;
+                // The words that distinguish the target from other things depend on the world, so every world finds them anew.
+                if let Some(target) = &mut path.target {
+                    target.told_by.clear();
+                    target.descriptions.clear();
+                }
+                path.target = path.target.filter(|_| settings.target == TargetMode::Given);
+                paths.push(path);
+            }
+            Ok(())
+        })?;
+        if paths.is_empty() {
+            let problem = format!("{}: the run has no path yet", folder.display());
+            return Err(Error::usage(problem, "finish it with the same `wayword generate` command"));
+        }
+        let mut texts = BTreeMap::new();
+        for record in jsonl::read(&folder.join(file::INSTRUCTIONS))? {
+            let key = (record.path.id.clone(), record.instruction.style.clone());
+            texts.entry(key).or_insert(record.instruction.text);
+        }
+        Ok(Self { folder: folder.to_owned(), settings, paths, styles, texts })
+    }
+
+    /// Counts how many of these texts, given with path and style, are equal to the run's own.
+    pub(super) fn again<'t>(&self, texts: impl Iterator<Item = (&'t str, &'t str, Option<&'t str>)>) -> Again {
+        let mut again = Again::default();
+        for (path, style, text) in texts {
+            let before = self.texts.get(&(path.to_owned(), style.to_owned())).map(String::as_str);
+            again.of += 1;
+            again.equal += usize::from(before == text);
+        }
+        again
+    }
+}

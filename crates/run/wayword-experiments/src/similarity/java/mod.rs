@@ -1,0 +1,143 @@
+//! Runs METEOR and SPICE, Java programs that the user has installed: starts each one, gives it texts, and reads the scores
+//! within a time limit.
+
+mod meteor;
+mod spice;
+
+use crate::similarity::args::Similarity as Args;
+use serde::Serialize;
+use std::{
+    io::{BufRead, Read},
+    path::Path,
+    process::{Child, Command, Stdio},
+    sync::{Arc, Mutex, PoisonError, mpsc},
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+use wayword_metrics::captions::{Row, Sets, Text, Vocabulary};
+use wayword_run::error::Error;
+
+/// Time limit for a program over one set of texts.
+const MOST_TIME: Duration = Duration::from_secs(1800);
+/// Most bytes that are read of a line.
+const MOST_LINE: u64 = 64 << 20;
+
+/// The scores of one program, over the same sets of texts as the other metrics.
+#[derive(Debug, Serialize)]
+pub(super) struct Outside {
+    pub(super) name: &'static str,
+    pub(super) all: Option<f64>,
+    pub(super) rest: Option<f64>,
+    pub(super) person: Option<f64>,
+    pub(super) other_path: Option<f64>,
+}
+
+/// A text and its references, in tokens with blanks between.
+struct Said {
+    text: String,
+    references: Vec<String>,
+}
+
+/// Scores one set of texts.
+type Scorer = fn(&Args, &Path, &[Said]) -> Result<f64, Error>;
+
+/// Runs the programs that the user named, and gives their scores.
+///
+/// # Errors
+/// When one cannot be started, ends early, takes too long, or answers something else.
+pub(super) fn of(args: &Args, sets: &Sets<'_>, vocabulary: &Vocabulary) -> Result<Vec<Outside>, Error> {
+    let words = vocabulary.words();
+    let line = |text: &Text| text.line(&words);
+    let mut found = Vec::new();
+    let programs: [(&'static str, Option<&Path>, Scorer); 2] =
+        [("METEOR", args.meteor_jar.as_deref(), meteor::score), ("SPICE", args.spice_jar.as_deref(), spice::score)];
+    for (name, jar, score) in programs {
+        let Some(jar) = jar else { continue };
+        if !jar.is_file() {
+            let problem = format!("{}: there is no such file", jar.display());
+            return Err(Error::usage(problem, "give the .jar of the program (docs/CRITICS.md)"));
+        }
+        let of_rows = |rows: &[Row<'_>]| -> Result<Option<f64>, Error> {
+            let said: Vec<Said> = rows
+                .iter()
+                .map(|row| Said {
+                    text: line(row.text),
+                    references: row.references.iter().map(|reference| line(reference)).collect(),
+                })
+                .collect();
+            (!said.is_empty()).then(|| score(args, jar, &said)).transpose()
+        };
+        found.push(Outside {
+            name,
+            all: of_rows(&sets.all)?,
+            rest: of_rows(&sets.rest)?,
+            person: of_rows(&sets.person)?,
+            other_path: sets.other_path.as_deref().map_or(Ok(None), of_rows)?,
+        });
+    }
+    Ok(found)
+}
+
+/// A running program. It is killed when it exceeds the time limit, and when this value is dropped.
+struct Running {
+    child: Arc<Mutex<Child>>,
+    done: Option<mpsc::Sender<()>>,
+    watch: Option<JoinHandle<()>>,
+}
+
+impl Running {
+    fn start(command: &mut Command) -> Result<(Self, Pipes), Error> {
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let name = command.get_program().to_string_lossy().into_owned();
+        let mut child = command.spawn().map_err(|error| {
+            Error::usage(format!("{name} cannot be started: {error}"), "install Java, or name it with --java PROGRAM")
+        })?;
+        let pipes = Pipes { input: child.stdin.take(), output: child.stdout.take() };
+        let child = Arc::new(Mutex::new(child));
+        let (done, is_done) = mpsc::channel();
+        let watched = Arc::clone(&child);
+        let watch = thread::spawn(move || {
+            if is_done.recv_timeout(MOST_TIME) == Err(mpsc::RecvTimeoutError::Timeout) {
+                let _ = watched.lock().unwrap_or_else(PoisonError::into_inner).kill();
+            }
+        });
+        Ok((Self { child, done: Some(done), watch: Some(watch) }, pipes))
+    }
+
+    /// Waits until the program exits or is killed. Returns whether it was successful.
+    fn is_well_at_end(&self) -> bool {
+        loop {
+            let state = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
+            match state {
+                Ok(Some(status)) => return status.success(),
+                Ok(None) => thread::sleep(Duration::from_millis(20)),
+                Err(_) => return false,
+            }
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        drop(self.done.take());
+        if let Some(watch) = self.watch.take() {
+            let _ = watch.join();
+        }
+        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+}
+
+/// The ends of a program's pipes.
+struct Pipes {
+    input: Option<std::process::ChildStdin>,
+    output: Option<std::process::ChildStdout>,
+}
+
+/// Reads a line of a program's output; `None` at its end.
+fn line(from: &mut impl BufRead) -> Option<String> {
+    let mut line = String::new();
+    let count = from.by_ref().take(MOST_LINE).read_line(&mut line).ok()?;
+    (count > 0).then(|| line.trim().to_owned())
+}

@@ -1,0 +1,120 @@
+//! How well texts agree with pictures, with the same two anchors as the other metrics: another person's text, and another path's.
+
+use super::metrics::percent;
+use crate::{
+    by_pictures::Critic,
+    similarity::args::Similarity as Args,
+    texts::{self, Items},
+};
+use serde::Serialize;
+use std::fmt;
+use wayword_metrics::{
+    Drawing,
+    captions::elsewhere,
+    pictures::{Agreed, Anchored, Figures, PREFIX, Seen, anchored},
+};
+use wayword_run::{count::count, error::Error, interrupt, output::Output};
+
+/// How well the texts of a set agree with pictures.
+#[derive(Debug, Serialize)]
+pub(super) struct ByPictures {
+    /// The name of the CLIP model.
+    clip: String,
+    /// The words that were put before each text.
+    prefix: &'static str,
+    #[serde(flatten)]
+    figures: Anchored,
+    /// Common items without a picture. No figure includes them.
+    without_pictures: usize,
+    /// Items for which B has only the text that is judged, so that there is no other person's.
+    without_person: usize,
+}
+
+/// An item that both sides have.
+struct Common<'a> {
+    id: &'a str,
+    path: &'a str,
+    /// A's first text.
+    text: &'a str,
+    /// B's first text.
+    first: &'a str,
+    /// B's first text that differs from A's.
+    person: Option<&'a str>,
+}
+
+/// Scores A's texts by the pictures of a run or platform; `None` if no CLIP is named.
+///
+/// # Errors
+/// When the model or the pictures cannot be read, or no item has pictures.
+pub(super) fn of(
+    args: &Args,
+    (a, b): (&Items, &Items),
+    drawing: &Drawing,
+    output: &Output,
+) -> Result<Option<ByPictures>, Error> {
+    let runs: Vec<_> = [&args.a, &args.b].into_iter().filter_map(|name| texts::run_of(name)).collect();
+    let Some(critic) = Critic::open(&args.pictured, &runs, &texts::file_of(&args.a), output)? else { return Ok(None) };
+    let mut common: Vec<Common<'_>> = Vec::new();
+    for (id, of_a) in a {
+        let Some(of_b) = b.get(id) else { continue };
+        let (Some(text), Some(first)) = (of_a.texts.first(), of_b.texts.first()) else { continue };
+        let person = of_b.texts.iter().find(|other| *other != text).map(String::as_str);
+        common.push(Common { id, path: &of_a.path, text, first, person });
+    }
+    let names: Vec<(&str, &str)> = common.iter().map(|item| (item.id, item.path)).collect();
+    let others = elsewhere(&names, drawing.seed);
+    let bar = output.progress(common.len(), "items");
+    let mut seen = Vec::new();
+    for (at, item) in common.iter().enumerate() {
+        interrupt::check()?;
+        let pictures = critic.frames.of(item.id, item.path)?;
+        let other = others.as_ref().map(|others| common[others[at]].first);
+        let asked: Vec<&str> = [Some(item.text), item.person, other].into_iter().flatten().collect();
+        let mut found = critic.agreed(&pictures, &asked)?.into_iter();
+        let mut next = |is_asked: bool| -> Option<Agreed> { if is_asked { found.next().flatten() } else { None } };
+        let (text, person, other_path) = (next(true), next(item.person.is_some()), next(other.is_some()));
+        seen.extend(text.map(|text| Seen { cluster: item.path, text, person, other_path }));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if seen.is_empty() {
+        let problem = format!("--clip: there is no picture of any of {}", count(common.len(), "item"));
+        return Err(Error::usage(
+            problem,
+            "give the run of these paths with --pictures RUN, or a platform that has pictures with --platform (`wayword platforms`)",
+        ));
+    }
+    Ok(Some(ByPictures {
+        clip: critic.name().to_owned(),
+        prefix: PREFIX,
+        figures: anchored(&seen, drawing),
+        without_pictures: common.len() - seen.len(),
+        without_person: seen.iter().filter(|item| item.person.is_none()).count(),
+    }))
+}
+
+impl fmt::Display for ByPictures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let heading = format!("with pictures, by {}", self.clip);
+        writeln!(f, "{heading}\n{:<42} {:>22} {:>22}", "2.5 times the cosine, times 100", "sentences", "whole text")?;
+        let Anchored { text, person, other_path } = &self.figures;
+        row(f, "A", text.as_ref())?;
+        row(f, "  another person's text", person.as_ref())?;
+        row(f, "  another path's text", other_path.as_ref())?;
+        if self.without_person > 0 {
+            let left = count(self.without_person, "item");
+            writeln!(f, "not in the second row, because B has no other text for them: {left}")?;
+        }
+        if self.without_pictures > 0 {
+            writeln!(f, "in no row, because there is no picture: {}", count(self.without_pictures, "item"))?;
+        }
+        writeln!(f, "CLIP hardly tells left from right, and does not know what comes first")
+    }
+}
+
+fn row(f: &mut fmt::Formatter<'_>, name: &str, figures: Option<&Figures>) -> fmt::Result {
+    match figures {
+        Some(Figures { parts, whole }) => writeln!(f, "{name:<42} {:>22} {:>22}", percent(parts), percent(whole)),
+        None => writeln!(f, "{name:<42} {:>22} nothing to measure", "-"),
+    }
+}

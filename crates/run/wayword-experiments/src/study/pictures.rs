@@ -1,0 +1,158 @@
+//! Draws the pictures of a study: panoramas of the places where people walk, and films of the paths that they watch.
+
+use super::walks::Walk;
+use rayon::prelude::*;
+use sha2::{Digest as _, Sha256};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path as FilePath,
+};
+use wayword_core::{Frame, Gaze, Heading, Platform, Pose, SceneId, ViewpointGraph, ViewpointId};
+use wayword_report::view::{
+    panorama::around,
+    path::between::{Step, steps},
+    picture,
+    unfinished::Unfinished,
+};
+use wayword_run::{error::Error, interrupt, output::Output};
+use wayword_study::{Picture, Place, Scene};
+
+/// Platforms for which this program draws pictures itself, at any place.
+const DRAWN: [&str; 2] = ["house", "habitat"];
+/// Width of a panorama, pixels: a phone shows a third of it, a desk's screen half.
+const PANORAMA_PX: u32 = 2400;
+/// Most places between two frames of a film, on platforms that can draw there.
+const BETWEEN: usize = 5;
+/// The number of pictures that a film should have: half a minute, at two for each second.
+const FILM: usize = 60;
+/// A film mentions a turn if it is larger than this since the last picture, radians.
+const TURNED_RAD: f64 = 0.15;
+
+/// Draws a panorama for each viewpoint that people can reach from the starts of some walks.
+///
+/// # Errors
+/// When a scene cannot be read or drawn, or a picture cannot be written.
+pub(super) fn scenes(
+    walks: &[Walk],
+    platform: &dyn Platform,
+    folder: &FilePath,
+    output: &Output,
+) -> Result<Vec<Scene>, Error> {
+    let mut starts: BTreeMap<&SceneId, BTreeSet<&ViewpointId>> = BTreeMap::new();
+    for walk in walks {
+        starts.entry(&walk.path.scene).or_default().extend(walk.viewpoints.first());
+    }
+    let mut wanted = Vec::new();
+    for (scene, starts) in starts {
+        let graph = platform.graph(scene)?;
+        let mut reached: BTreeSet<ViewpointId> = BTreeSet::new();
+        for start in starts {
+            if !reached.contains(start) {
+                let found = graph.distances_from(start);
+                let found =
+                    found.map_err(|source| wayword_core::PlatformError::Graph { scene: scene.clone(), source })?;
+                reached.extend(found.into_keys().cloned());
+            }
+        }
+        wanted.push((scene.clone(), graph, reached));
+    }
+    let all: usize = wanted.iter().map(|(_, _, reached)| reached.len()).sum();
+    let bar = output.progress(all, "panoramas");
+    let draw = |(scene, graph, reached): (SceneId, std::sync::Arc<ViewpointGraph>, BTreeSet<ViewpointId>)| {
+        let place = |id: &ViewpointId| {
+            interrupt::check()?;
+            let place = place(&scene, &graph, id, platform, folder, output)?;
+            bar.inc(1);
+            Ok((id.clone(), place))
+        };
+        let places = reached.par_iter().map(place).collect::<Result<BTreeMap<_, _>, Error>>()?;
+        Ok(Scene { scene, places })
+    };
+    let drawn = wanted.into_iter().map(draw).collect();
+    bar.finish_and_clear();
+    drawn
+}
+
+fn place(
+    scene: &SceneId,
+    graph: &ViewpointGraph,
+    id: &ViewpointId,
+    platform: &dyn Platform,
+    folder: &FilePath,
+    output: &Output,
+) -> Result<Place, Error> {
+    let unknown = || wayword_core::PlatformError::UnknownViewpoint { scene: scene.clone(), viewpoint: id.clone() };
+    let position = graph.position(id).ok_or_else(unknown)?;
+    let level = graph.level(id);
+    let frame = Frame { pose: Pose::level(position, Heading::NORTH), viewpoint: Some(id.clone()), level };
+    // The name holds all that the picture depends on: a command that was stopped and given anew with other paths draws others.
+    let panorama = file_name(&["panorama", platform.name(), scene.as_str(), id.as_str(), &format!("{position:?}")]);
+    let file = folder.join(&panorama);
+    // A command that was stopped goes on with the pictures that it has.
+    if !file.is_file() {
+        let whole = around(platform, scene, &frame, Some(PANORAMA_PX), output)?;
+        Unfinished::whole(&file, &picture::jpeg(&whole)?)?;
+    }
+    let neighbours = graph.neighbours(id).into_iter().cloned().collect();
+    Ok(Place { position: position.to_array(), level, neighbours, panorama })
+}
+
+/// Draws the film of a walk.
+///
+/// # Errors
+/// When the platform has no picture of the walk, or a picture cannot be written.
+pub(super) fn film(walk: &Walk, platform: &dyn Platform, folder: &FilePath) -> Result<Vec<Picture>, Error> {
+    interrupt::check()?;
+    let draws_anywhere = DRAWN.contains(&platform.name()) && walk.path.motion.is_known();
+    let between = (FILM / walk.path.frames.len().max(1)).saturating_sub(1).min(BETWEEN);
+    let steps = steps(&walk.path, if draws_anywhere { between } else { 0 })?;
+    let picture = |(number, step): (usize, &Step)| {
+        let name = file_name(&["film", platform.name(), walk.path.scene.as_str(), &format!("{:?}", step.frame)]);
+        let file = folder.join(&name);
+        if !file.is_file() {
+            let view = platform.look(&walk.path.scene, &step.frame, Gaze::quarter(step.frame.pose.heading))?;
+            let Some(image) = view.image else { return Ok(None) };
+            Unfinished::whole(&file, &picture::jpeg(&image)?)?;
+        }
+        let before = number.checked_sub(1).map(|before| &steps[before]);
+        Ok(Some(Picture { file: name, alt: told(before, step, walk.path.motion.is_known()) }))
+    };
+    let pictures: Vec<Picture> =
+        steps.par_iter().enumerate().map(picture).collect::<Result<Vec<_>, Error>>()?.into_iter().flatten().collect();
+    if pictures.is_empty() {
+        let problem = format!("path {}: there is no picture of it", walk.name);
+        return Err(Error::usage(
+            problem,
+            "`wayword platforms` says which platforms have pictures, and what they need",
+        ));
+    }
+    Ok(pictures)
+}
+
+/// Describes the motion in a picture of a film, as its alternative text. It names no thing in the picture, because people judge
+/// whether the text names the right things.
+fn told(before: Option<&Step>, step: &Step, is_known: bool) -> String {
+    let Some(before) = before else { return "The walk begins.".to_owned() };
+    if !is_known {
+        return "The walk goes on.".to_owned();
+    }
+    let turn_rad = before.frame.pose.heading.turn_to(step.frame.pose.heading);
+    match turn_rad {
+        right if right > TURNED_RAD => "The walk turns to the right.",
+        left if left < -TURNED_RAD => "The walk turns to the left.",
+        _ => "The walk goes on.",
+    }
+    .to_owned()
+}
+
+/// A file name that does not reveal its content to participants: a hash of the parts.
+fn file_name(parts: &[&str]) -> String {
+    let mut hash = Sha256::new();
+    for part in parts {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
+    }
+    let bytes = hash.finalize();
+    let name: String = bytes.iter().take(12).map(|byte| format!("{byte:02x}")).collect();
+    format!("{name}.jpg")
+}

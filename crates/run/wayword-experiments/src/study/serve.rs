@@ -1,0 +1,99 @@
+//! `wayword study serve`: runs the site of a study, and prints its address and links.
+
+use super::links;
+use crate::study_args::StudyServe;
+use qrcode::{QrCode, render::unicode::Dense1x2};
+use serde::Serialize;
+use wayword_run::{
+    error::{Error, Exit},
+    interrupt,
+    output::Output,
+};
+use wayword_study::{Listen, Recruiter, Security, Started, Study, serve};
+
+/// The addresses under which the site can be reached.
+#[derive(Debug, Serialize)]
+struct Serving {
+    url: String,
+    /// The link for the recruiter. For Prolific it contains placeholders that Prolific fills in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    recruiter_link: Option<String>,
+    links: Vec<String>,
+}
+
+pub fn run(args: &StudyServe, output: &Output) -> Result<Exit, Error> {
+    let _graceful = interrupt::finish_first(None);
+    let study = Study::open(&args.study)?;
+    let security = match &args.tls {
+        Some(files) => Security::Tls { certificate: files[0].clone(), key: files[1].clone() },
+        None if args.self_signed => Security::SelfSigned,
+        None if args.insecure_lan => Security::InsecureLan,
+        None => Security::Loopback,
+    };
+    if security == Security::InsecureLan {
+        output
+            .say("warning: without TLS, others in this network can read what participants send, and take their place");
+    }
+    let listen = Listen { address: args.listen, security, public: args.public.clone() };
+    let told = study.clone();
+    let mut made = Ok(());
+    let started = |started: &Started| made = tell(&told, started, args, output);
+    serve(study, &listen, started, interrupt::is_asked)?;
+    made?;
+    output.say("stopped; the same command goes on");
+    Ok(Exit::Done)
+}
+
+fn tell(study: &Study, started: &Started, args: &StudyServe, output: &Output) -> Result<(), Error> {
+    let links = if args.links > 0 { links(study, args.links, &started.url)?.links } else { Vec::new() };
+    let recruiter_link = match &study.settings.recruiter {
+        Recruiter::Links => None,
+        Recruiter::Parameters { person, session, study, .. } => {
+            Some(recruiter_link(&started.url, [person, study, session]))
+        }
+    };
+    let serving = Serving { url: started.url.clone(), recruiter_link, links };
+    output.data(&serving, said(&serving, args.self_signed));
+    if study.settings.contact.trim().is_empty() {
+        output
+            .say("study.toml: `contact` is empty: participants could ask nobody. Fill it in before you invite anybody");
+    }
+    if let Recruiter::Parameters { only_study, .. } = &study.settings.recruiter
+        && only_study.is_empty()
+    {
+        output.say("study.toml: `only_study` is empty: links of any study of the recruiter are let in");
+    }
+    output.say("Ctrl-C stops it; the same command goes on");
+    Ok(())
+}
+
+/// The link for the recruiter, with Prolific's placeholders.
+fn recruiter_link(url: &str, [person, study, session]: [&String; 3]) -> String {
+    let place = |name: &String| match name.as_str() {
+        "" => String::new(),
+        "PROLIFIC_PID" | "STUDY_ID" | "SESSION_ID" => format!("{name}={{{{%{name}%}}}}"),
+        name => format!("{name}=..."),
+    };
+    let query: Vec<String> = [person, study, session].into_iter().map(place).filter(|part| !part.is_empty()).collect();
+    format!("{url}/join?{}", query.join("&"))
+}
+
+fn said(serving: &Serving, has_code: bool) -> String {
+    let mut lines = vec![format!("the study is at {}", serving.url)];
+    if let Some(link) = &serving.recruiter_link {
+        lines.push(format!("link for the recruiter: {link}"));
+    }
+    lines.extend(serving.links.iter().map(|link| format!("personal link: {link}")));
+    if serving.recruiter_link.is_none() && serving.links.is_empty() {
+        lines.push("participants need a personal link: `wayword study invite` makes some".to_owned());
+    }
+    let code = has_code.then(|| QrCode::new(serving.links.first().unwrap_or(&serving.url))).and_then(Result::ok);
+    if let Some(code) = code {
+        lines.push(
+            "the first link, for the camera of a phone; its browser warns, because nobody vouches for the certificate:"
+                .to_owned(),
+        );
+        lines.push(code.render::<Dense1x2>().dark_color(Dense1x2::Light).light_color(Dense1x2::Dark).build());
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,275 @@
+//! The command line of `wayword study`. It is compiled even into builds without studies.
+
+use clap::{Args, Subcommand, ValueEnum};
+use std::{net::SocketAddr, path::PathBuf, str::FromStr};
+use wayword_run::settings::AskedPlatform;
+
+/// `wayword study`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword study new --run ours=runs/central#r2r --run theirs=runs/other#r2r --mode follow --out STUDY
+      Make a study: people walk by the texts of two runs, and by texts of other paths, through generated houses.
+  wayword study plan STUDY
+      See how many people it needs, and which differences it would find.
+  wayword study serve STUDY --links 3
+      Show it on this machine, and print three personal links.
+  wayword study status STUDY
+  wayword study results STUDY --out FOLDER
+  wayword study close STUDY
+
+docs/STUDY.md says what participants see, how nothing is lost, and what stands in the results.")]
+pub struct Study {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: StudyCommand,
+}
+
+/// What can be done with a study.
+#[derive(Debug, Subcommand)]
+pub enum StudyCommand {
+    /// Make a study from runs: choose paths, draw their pictures, write its folder.
+    New(Box<StudyNew>),
+    /// Show the study to people.
+    Serve(StudyServe),
+    /// Make personal links, one for each participant.
+    Invite(StudyInvite),
+    /// Show how many people the study needs, and which differences it would find.
+    Plan(StudyPlan),
+    /// Show how far it is.
+    Status(StudyStatus),
+    /// Write tables, plots, raw data and a codebook.
+    Results(StudyResults),
+    /// Remove all that one participant gave.
+    Forget(StudyForget),
+    /// Compare a recruiter's list of participants with ours.
+    Reconcile(StudyReconcile),
+    /// Take no more answers, and drop the recruiter's ids.
+    Close(StudyClose),
+}
+
+/// `wayword study new`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword study new --run ours=runs/houses#r2r --mode follow --out STUDY
+  wayword study new --run a=runs/central#r2r --run b=runs/other#r2r --include people,other-path --episodes R2R_val_seen.json \\
+      --platform matterport --data DATA --i-have-the-right --items 60 --per-item 5 --mode rate --out STUDY
+  wayword study new --run plain=runs/a#r2r --run marked=runs/a#r2r --doubts marked --mode follow --out STUDY
+  wayword study new --run a=runs/a#r2r --run b=runs/b#r2r --mode pair --recruiter prolific --out STUDY")]
+pub struct StudyNew {
+    /// A set of texts: NAME=RUN#STYLE or NAME=FILE. Give the flag several times to compare sets.
+    #[arg(long, value_name = "NAME=SET", required = true)]
+    pub run: Vec<NamedSet>,
+    /// Controls: people (the texts of --episodes) and other-path (a text of another path in the same scene: what a wrong text reaches).
+    #[arg(long, value_name = "CONTROLS", value_delimiter = ',')]
+    pub include: Vec<Control>,
+    /// Mark the words to doubt in the texts of this set or control, with the alternatives, for those who walk by them.
+    /// May be given several times. The same run under two names, one of them marked, shows what the marks are worth.
+    #[arg(long, value_name = "NAME")]
+    pub doubts: Vec<String>,
+    /// Dataset file of the paths: R2R, REVERIE, RxR or Wayword. [default: the paths of the first run]
+    #[arg(long, value_name = "FILE")]
+    pub episodes: Option<PathBuf>,
+    /// The platform of the paths.
+    #[command(flatten)]
+    pub platform: AskedPlatform,
+    /// What people do: follow (walk by the text), rate (answer four questions about it) or pair (choose between two).
+    #[arg(long, value_name = "MODE")]
+    pub mode: StudyMode,
+    /// How many paths. Each has one text for every condition; one more path is for practice.
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub items: u32,
+    /// How many answers each text gets, from as many people.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub per_item: u32,
+    /// How many texts a participant gets, each about another path.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=200))]
+    pub per_participant: u32,
+    /// Where participants come from: links (personal ones), prolific or mturk.
+    #[arg(long, value_name = "RECRUITER", default_value = "links")]
+    pub recruiter: StudyRecruiter,
+    /// Confirm that you may show the pictures of this platform to participants. Every platform but house needs it: its scenes
+    /// belong to somebody.
+    #[arg(long)]
+    pub i_have_the_right: bool,
+    /// Seed of the choice of paths and of everything else that is random, but tokens.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Folder for the study.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Texts that show what the figures of a study are worth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Control {
+    /// Those of the dataset.
+    People,
+    /// Those of other paths.
+    OtherPath,
+}
+
+/// What people do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StudyMode {
+    /// Walk by the text.
+    Follow,
+    /// Answer questions about it.
+    Rate,
+    /// Choose between two.
+    Pair,
+}
+
+/// Where participants come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StudyRecruiter {
+    /// Personal links.
+    Links,
+    /// Prolific's placeholders.
+    Prolific,
+    /// MTurk's parameters.
+    Mturk,
+}
+
+/// `wayword study serve`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword study serve STUDY --links 5
+      On this machine only. Put a server with TLS before it, and name the address that people use: --public https://study.example.org
+  wayword study serve STUDY --listen 0.0.0.0:8443 --tls cert.pem key.pem
+  wayword study serve STUDY --listen 0.0.0.0:8443 --self-signed --links 1
+      For phones in the room: prints a link and a QR code. Browsers warn of the certificate.
+
+Stop it with Ctrl-C, and start it again with the same command: participants go on where they were.")]
+pub struct StudyServe {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// Address and port to listen on.
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:8080")]
+    pub listen: SocketAddr,
+    /// The address that participants open, where another server passes requests on to this one.
+    #[arg(long, value_name = "URL", value_parser = public_url)]
+    pub public: Option<String>,
+    /// Certificate chain and private key, as PEM files.
+    #[arg(long, num_args = 2, value_names = ["CERT", "KEY"], conflicts_with_all = ["self_signed", "insecure_lan"])]
+    pub tls: Option<Vec<PathBuf>>,
+    /// Use a certificate that the study makes for itself.
+    #[arg(long, conflicts_with = "insecure_lan")]
+    pub self_signed: bool,
+    /// Listen on other addresses than this machine's without TLS. Others in the network can read along.
+    #[arg(long)]
+    pub insecure_lan: bool,
+    /// Make so many personal links, and print them.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub links: u32,
+}
+
+fn public_url(text: &str) -> Result<String, String> {
+    let host =
+        text.strip_prefix("https://").or_else(|| text.strip_prefix("http://")).map(|host| host.trim_end_matches('/'));
+    match host {
+        Some(host) if !host.is_empty() && !host.contains('/') => Ok(text.trim_end_matches('/').to_owned()),
+        _ => Err("give the scheme and host alone, as https://study.example.org".to_owned()),
+    }
+}
+
+/// `wayword study invite`.
+#[derive(Debug, Args)]
+pub struct StudyInvite {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// How many links.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub count: u32,
+    /// The address that participants open.
+    #[arg(long, value_name = "URL", default_value = "http://127.0.0.1:8080", value_parser = public_url)]
+    pub url: String,
+}
+
+/// `wayword study plan`.
+#[derive(Debug, Args)]
+pub struct StudyPlan {
+    /// Folder of the study.
+    pub study: PathBuf,
+}
+
+/// `wayword study status`.
+#[derive(Debug, Args)]
+pub struct StudyStatus {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// List the participants too.
+    #[arg(long)]
+    pub participants: bool,
+}
+
+/// `wayword study results`.
+#[derive(Debug, Args)]
+pub struct StudyResults {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// Folder for tables, plots, raw data and codebook.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// `wayword study forget`.
+#[derive(Debug, Args)]
+pub struct StudyForget {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// The participant: our id (`status --participants` lists them), the recruiter's, or a personal link.
+    // Ids are drawn from an alphabet that has a hyphen, so one may begin with it.
+    #[arg(long, value_name = "ID", allow_hyphen_values = true)]
+    pub participant: String,
+    /// Only show what would be removed.
+    #[arg(long)]
+    pub dry_run: bool,
+}
+
+/// `wayword study reconcile`.
+#[derive(Debug, Args)]
+pub struct StudyReconcile {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// The recruiter's export: CSV with a column `Participant id` (or `WorkerId`) and a column `Status`.
+    pub csv: PathBuf,
+}
+
+/// `wayword study close`.
+#[derive(Debug, Args)]
+pub struct StudyClose {
+    /// Folder of the study.
+    pub study: PathBuf,
+    /// Close it even if participants are in the middle of it.
+    #[arg(long)]
+    pub even_if_live: bool,
+}
+
+/// A name and a source of texts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedSet {
+    /// The condition.
+    pub name: String,
+    /// Run or file.
+    pub source: String,
+}
+
+impl FromStr for NamedSet {
+    type Err = String;
+
+    fn from_str(typed: &str) -> Result<Self, String> {
+        let is_plain = |name: &str| {
+            !name.is_empty()
+                && name.chars().all(|letter| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.'))
+        };
+        match typed.split_once('=') {
+            Some((name, source)) if is_plain(name) && !source.is_empty() => {
+                Ok(Self { name: name.to_owned(), source: source.to_owned() })
+            }
+            _ => Err("give NAME=RUN#STYLE or NAME=FILE; a name has letters, digits, - _ and .".to_owned()),
+        }
+    }
+}

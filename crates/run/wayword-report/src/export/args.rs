@@ -1,0 +1,151 @@
+//! The command line of `wayword export`: its flags, and the formats that it can write.
+
+use crate::export::steps_args::AskedSteps;
+use clap::{Args, ValueEnum};
+use std::{fmt, path::PathBuf};
+use wayword_formats::Format;
+use wayword_run::check::args::AskedWorld;
+use wayword_run::settings::AskedPlatform;
+
+/// The format of an export.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ExportFormat {
+    /// A file of R2R's format.
+    R2r,
+    /// A file of REVERIE's.
+    Reverie,
+    /// A file of RxR's.
+    Rxr,
+    /// A file of VLN-CE's.
+    Vlnce,
+    /// A file of Wayword's own records.
+    Wayword,
+    /// The files that VLN-DUET and VLN-HAMT load, with the ids of the tokens.
+    Duet,
+    /// One table.
+    Parquet,
+    /// A folder with tables and a dataset card.
+    Hf,
+    /// A folder of trajectories: single actions, with a picture before each.
+    Steps,
+}
+
+impl ExportFormat {
+    /// The format of the single file that is written, which the program can also read; `None` for formats of several files.
+    #[must_use]
+    pub fn of_one_file(self) -> Option<Format> {
+        match self {
+            Self::R2r => Some(Format::R2r),
+            Self::Reverie => Some(Format::Reverie),
+            Self::Rxr => Some(Format::Rxr),
+            Self::Vlnce => Some(Format::Vlnce),
+            Self::Wayword => Some(Format::Wayword),
+            Self::Duet | Self::Parquet | Self::Hf | Self::Steps => None,
+        }
+    }
+
+    /// Whether it takes several runs.
+    #[must_use]
+    pub fn takes_several_runs(self) -> bool {
+        matches!(self, Self::Wayword | Self::Parquet | Self::Hf)
+    }
+
+    /// Whether it takes texts of several styles.
+    #[must_use]
+    pub fn takes_all_styles(self) -> bool {
+        self.takes_several_runs() || self == Self::Steps
+    }
+
+    /// Whether the written files name the split of each text.
+    #[must_use]
+    pub fn says_splits(self) -> bool {
+        matches!(self, Self::Rxr | Self::Duet | Self::Parquet | Self::Hf | Self::Steps)
+    }
+}
+
+impl fmt::Display for ExportFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.to_possible_value();
+        f.write_str(name.as_ref().map_or("", |name| name.get_name()))
+    }
+}
+
+/// A dataset; agents load files that are named and laid out as in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum AgentDataset {
+    /// R2R_SPLIT_enc.json.
+    R2r,
+    /// REVERIE_SPLIT_enc.json.
+    Reverie,
+    /// rxr_SPLIT_guide_enc_xlmr.jsonl.
+    Rxr,
+}
+
+/// `wayword export`.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  wayword export --run runs/val_seen --style reverie --format reverie --out val_seen_generated.json
+  wayword export --run runs/a --run runs/b --format wayword --val-share 0.1 --out merged.jsonl
+  wayword export --run runs/val_seen --style r2r --format duet --tokenizer hf/google-bert/bert-base-uncased --out annotations
+  wayword export --run runs/houses --format hf --out published      (a folder that Python's datasets reads)
+  wayword export --run runs/houses --format parquet --out houses.parquet
+  wayword export --run runs/houses --format steps --out train        (VLN-CE's actions, with a picture before each)
+  wayword export --run runs/houses --format steps --shard 100 --size-px 640x480 --out shards
+  wayword export --run runs/val_seen --style r2r --highlight doubts
+  wayword export --texts R2R_val_seen.json --platform matterport --data DATA --highlight doubts")]
+pub struct Export {
+    /// Run folder. Several can be merged in the formats wayword, parquet and hf.
+    #[arg(long, value_name = "DIR")]
+    pub run: Vec<PathBuf>,
+    /// Export only the instructions of this style; required for all formats but wayword, parquet, hf and steps.
+    #[arg(long, value_name = "STYLE")]
+    pub style: Option<String>,
+    /// Instead of a dataset, write NAME.html and NAME.json: the texts with the words that a reader should doubt, and up to three
+    /// alternatives for each. docs/CHECKS.md explains which words these are.
+    #[arg(long, value_name = "NAME")]
+    pub highlight: Option<PathBuf>,
+    /// With --highlight: the texts of this file instead of a run's: R2R, REVERIE, RxR or Wayword.
+    #[arg(long, value_name = "FILE")]
+    pub texts: Option<PathBuf>,
+    /// The platform of --texts. A run knows its own.
+    #[command(flatten)]
+    pub platform: AskedPlatform,
+    /// With --highlight: the world in which the texts are checked. Other words are offered in an open world alone.
+    #[arg(long, value_name = "WORLD", value_enum, default_value_t)]
+    pub world: AskedWorld,
+    /// Format: r2r, reverie, rxr, vlnce, wayword; duet, the files of VLN-DUET and VLN-HAMT with the ids of tokens; parquet, a table;
+    /// hf, a folder with tables and a dataset card, made for publishing; steps, a folder of single actions with a picture before
+    /// each, for training.
+    #[arg(long, value_enum, hide_possible_values = true)]
+    pub format: Option<ExportFormat>,
+    /// File to write; for duet, hf and steps a folder. Where a format's loaders refuse unknown fields, the provenance goes into a second
+    /// file beside it.
+    #[arg(long, value_name = "PATH")]
+    pub out: Option<PathBuf>,
+    /// With duet: the agent's tokenizer, a tokenizer.json or the model that has it, such as hf/google-bert/bert-base-uncased
+    /// (R2R, REVERIE) or hf/FacebookAI/xlm-roberta-base (RxR).
+    #[arg(long, value_name = "FILE|MODEL")]
+    pub tokenizer: Option<String>,
+    /// With duet: the dataset of the agent's files. [default: the one that the style is named after; else reverie if the texts name
+    /// targets; else r2r]
+    #[arg(long, value_enum)]
+    pub dataset: Option<AgentDataset>,
+    /// The split of all texts. A scene of an official val_unseen or test split goes into no other. [default: the split of the run's
+    /// episodes; else the official split of the scene; else train]
+    #[arg(long, value_name = "NAME")]
+    pub split: Option<String>,
+    /// With hf: confirm that you may publish texts about the scenes of this platform. Every platform but house needs it: its scenes are
+    /// somebody's.
+    #[arg(long)]
+    pub i_have_the_right: bool,
+    /// Put this share of the scenes into a val split. No scene is in both splits, and none that is officially held out is in train.
+    #[arg(long, value_name = "SHARE")]
+    pub val_share: Option<f64>,
+    /// Seed of the choice of val scenes.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// How walks are taken in single actions.
+    #[command(flatten)]
+    pub steps: AskedSteps,
+}

@@ -1,0 +1,266 @@
+//! Writes the dataset card, the `README.md` of a published folder: who wrote the texts, the evidence that they were checked against,
+//! and the terms of the scenes that they describe. All of it comes from the provenance of the records.
+
+mod escape;
+
+use crate::export::args::Export;
+use minijinja::{Environment, UndefinedBehavior};
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+use wayword_core::{Ambiguity, Check, SceneId, Verdict};
+use wayword_formats::jsonl::Record;
+use wayword_run::{
+    count::count,
+    error::Error,
+    run_folder::{Rejected, file, read_lines},
+    terms,
+};
+
+const TEMPLATE: &str = include_str!("card.md");
+/// The hub's classes of size, each with its upper limit.
+const SIZES: [(usize, &str); 4] =
+    [(1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M")];
+/// Names of the roles that no model plays.
+const LABELS: &str = "labels";
+const RULES: &str = "rules";
+
+/// The values that the template of the card shows.
+#[derive(Debug, Serialize)]
+struct Card {
+    name: String,
+    version: &'static str,
+    size: &'static str,
+    instructions: usize,
+    paths: usize,
+    scenes: usize,
+    splits: Vec<SplitLine>,
+    roles: Vec<RoleLine>,
+    /// Number of texts with ground-truth labels as their source, and of texts that rules wrote.
+    labels: usize,
+    rules: usize,
+    styles: BTreeSet<String>,
+    seeds: BTreeSet<String>,
+    repaired: usize,
+    #[serde(flatten)]
+    outcome: Outcome,
+    rejected: usize,
+    checks: Vec<CheckLine>,
+    ambiguous: usize,
+    looked_at: usize,
+    platforms: Vec<PlatformLine>,
+    is_somebodys: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct SplitLine {
+    name: String,
+    file: String,
+    instructions: usize,
+    paths: usize,
+    scenes: usize,
+}
+
+/// The models and rules that wrote texts together, with the number of these texts.
+#[derive(Debug, Serialize)]
+struct RoleLine {
+    instructions: usize,
+    #[serde(flatten)]
+    roles: Roles,
+}
+
+#[derive(Debug, Serialize, PartialEq, Eq, PartialOrd, Ord)]
+struct Roles {
+    asker: String,
+    answerer: String,
+    summariser: String,
+    writer: String,
+    checked_against: String,
+    version: String,
+}
+
+/// How many texts got each verdict.
+#[derive(Debug, Default, Serialize)]
+struct Outcome {
+    passed: usize,
+    unverified: usize,
+    failed: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct CheckLine {
+    name: &'static str,
+    #[serde(flatten)]
+    outcome: Outcome,
+}
+
+#[derive(Debug, Serialize)]
+struct PlatformLine {
+    name: String,
+    instructions: usize,
+    scenes: usize,
+    terms: &'static str,
+}
+
+/// The file name of a split, in the form that the loaders of the Hugging Face hub recognise.
+pub(super) fn file_name(split: &str) -> String {
+    format!("{split}-00000-of-00001.parquet")
+}
+
+/// The text of the card for the records of an export; `splits` has the split of each record.
+///
+/// # Errors
+/// When the runs' rejected texts cannot be read.
+pub(super) fn of(args: &Export, out: &Path, records: &[Record], splits: &[String]) -> Result<String, Error> {
+    let name = out.file_name().map_or_else(|| "Wayword".to_owned(), |name| name.to_string_lossy().into_owned());
+    drawn(&Card::new(name, records, splits, rejected(args)?))
+        .map_err(|error| Error::usage(format!("the dataset card cannot be written: {error:#}"), "report this as a bug"))
+}
+
+fn drawn(card: &Card) -> Result<String, minijinja::Error> {
+    let mut templates = Environment::new();
+    templates.set_undefined_behavior(UndefinedBehavior::Strict);
+    templates.set_keep_trailing_newline(true);
+    templates.set_formatter(escape::write);
+    templates.add_function("count", |number: u64, of: &str| count(number, of));
+    templates.add_filter("yaml", escape::yaml);
+    templates.add_filter("plain", escape::plain);
+    templates.add_filter("join", escape::join);
+    templates.add_template("card.md", TEMPLATE)?;
+    templates.get_template("card.md")?.render(card)
+}
+
+/// How many texts the runs rejected, of the style that is exported.
+fn rejected(args: &Export) -> Result<usize, Error> {
+    let mut rejected = 0;
+    for run in &args.run {
+        let of_run: Vec<Rejected> = read_lines(&run.join(file::REJECTED))?;
+        let is_of_style = |text: &&Rejected| args.style.as_ref().is_none_or(|style| *style == text.style);
+        rejected += of_run.iter().filter(is_of_style).count();
+    }
+    Ok(rejected)
+}
+
+impl Card {
+    fn new(name: String, records: &[Record], splits: &[String], rejected: usize) -> Self {
+        let count = |is: fn(&Record) -> bool| records.iter().filter(|record| is(record)).count();
+        let looked_at = records.iter().filter_map(|record| record.instruction.ambiguity.as_ref());
+        let largest = "1M<n<10M";
+        let all: Vec<&Record> = records.iter().collect();
+        Self {
+            name,
+            version: env!("CARGO_PKG_VERSION"),
+            size: SIZES.iter().find(|(most, _)| records.len() < *most).map_or(largest, |(_, size)| size),
+            instructions: records.len(),
+            paths: paths(&all),
+            scenes: scenes(&all),
+            splits: split_lines(records, splits),
+            roles: role_lines(records),
+            labels: count(|record| record.instruction.provenance.answerer == LABELS),
+            rules: count(|record| record.instruction.provenance.writer == RULES),
+            styles: records.iter().map(|record| record.instruction.style.clone()).collect(),
+            seeds: records.iter().map(|record| record.instruction.provenance.seed.to_string()).collect(),
+            repaired: count(|record| record.instruction.provenance.repairs > 0),
+            outcome: Outcome::of(records.iter().map(|record| record.instruction.verdict)),
+            rejected,
+            checks: check_lines(records),
+            ambiguous: looked_at.clone().filter(|ambiguity| Ambiguity::is_ambiguous(ambiguity)).count(),
+            looked_at: looked_at.count(),
+            platforms: platform_lines(records),
+            is_somebodys: records.iter().any(|record| terms::are_somebodys(&record.platform)),
+        }
+    }
+}
+
+impl Outcome {
+    fn of(verdicts: impl Iterator<Item = Verdict>) -> Self {
+        let mut outcome = Self::default();
+        for verdict in verdicts {
+            match verdict {
+                Verdict::Pass => outcome.passed += 1,
+                Verdict::Unverified => outcome.unverified += 1,
+                Verdict::Fail => outcome.failed += 1,
+            }
+        }
+        outcome
+    }
+}
+
+/// The number of different paths.
+fn paths(records: &[&Record]) -> usize {
+    let name = |record: &&Record| (record.platform.clone(), record.path.scene.clone(), record.path_id());
+    records.iter().map(name).collect::<BTreeSet<_>>().len()
+}
+
+/// The number of different scenes.
+fn scenes(records: &[&Record]) -> usize {
+    let name = |record: &&Record| -> (String, SceneId) { (record.platform.clone(), record.path.scene.clone()) };
+    records.iter().map(name).collect::<BTreeSet<_>>().len()
+}
+
+/// Groups records by a key that is computed from the index and the record.
+fn by<K: Ord>(records: &[Record], key: impl Fn(usize, &Record) -> K) -> BTreeMap<K, Vec<&Record>> {
+    let mut parts: BTreeMap<K, Vec<&Record>> = BTreeMap::new();
+    for (index, record) in records.iter().enumerate() {
+        parts.entry(key(index, record)).or_default().push(record);
+    }
+    parts
+}
+
+fn split_lines(records: &[Record], splits: &[String]) -> Vec<SplitLine> {
+    let line = |(split, of_split): (&str, Vec<&Record>)| SplitLine {
+        name: split.to_owned(),
+        file: file_name(split),
+        instructions: of_split.len(),
+        paths: paths(&of_split),
+        scenes: scenes(&of_split),
+    };
+    by(records, |index, _| splits.get(index).map_or("", String::as_str)).into_iter().map(line).collect()
+}
+
+fn role_lines(records: &[Record]) -> Vec<RoleLine> {
+    let roles = |_: usize, record: &Record| {
+        let provenance = record.instruction.provenance.clone();
+        let seen_by = match provenance.detector {
+            Some(detector) => format!("{}, with the detector {detector}", provenance.answerer),
+            None => provenance.answerer,
+        };
+        let written_by = match provenance.finished_for {
+            Some(other) => format!("{}, where {other} failed", provenance.writer),
+            None => provenance.writer,
+        };
+        Roles {
+            asker: provenance.asker,
+            answerer: seen_by,
+            summariser: provenance.summariser,
+            writer: written_by,
+            checked_against: provenance.checked_against,
+            version: provenance.wayword,
+        }
+    };
+    by(records, roles).into_iter().map(|(roles, of)| RoleLine { instructions: of.len(), roles }).collect()
+}
+
+fn check_lines(records: &[Record]) -> Vec<CheckLine> {
+    let findings = || records.iter().flat_map(|record| &record.instruction.findings);
+    let line = |check: Check| {
+        let of_check = findings().filter(|finding| finding.check == check).map(|finding| finding.verdict);
+        CheckLine { name: check.name(), outcome: Outcome::of(of_check) }
+    };
+    Check::ALL.into_iter().map(line).collect()
+}
+
+fn platform_lines(records: &[Record]) -> Vec<PlatformLine> {
+    let line = |(platform, of): (String, Vec<&Record>)| PlatformLine {
+        instructions: of.len(),
+        scenes: scenes(&of),
+        terms: terms::of(&platform),
+        name: platform,
+    };
+    by(records, |_, record| record.platform.clone()).into_iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests;

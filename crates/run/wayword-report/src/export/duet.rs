@@ -1,0 +1,169 @@
+//! Writes the files that the loaders of the agents VLN-DUET and VLN-HAMT read: the items of R2R, REVERIE or RxR, to which the token
+//! ids of each instruction are added. One file for each split.
+
+use super::{items, splits, tell_overwriting, tell_terms, tell_written};
+use crate::export::args::{AgentDataset, Export, ExportFormat};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+use wayword_core::MentionKind;
+use wayword_formats::{Format, jsonl::Record};
+use wayword_run::{error::Error, output::Output};
+
+/// The models with the tokenizers that these agents use.
+const BERT: &str = "hf/google-bert/bert-base-uncased";
+const XLM_ROBERTA: &str = "hf/FacebookAI/xlm-roberta-base";
+
+/// The token ids of each text, and whether the tokenizer is XLM-RoBERTa's.
+struct Encoded {
+    is_xlm: bool,
+    ids: Vec<Vec<u32>>,
+}
+
+pub(super) fn write(args: &Export, out: &Path, records: &[Record], output: &Output) -> Result<(), Error> {
+    items::refuse_without_poses(ExportFormat::Duet, records)?;
+    refuse_without_viewpoints(records)?;
+    let splits = splits::of_records(args, records)?;
+    let dataset = args.dataset.unwrap_or_else(|| usual(records));
+    let Encoded { is_xlm, ids } = encoded(args.tokenizer.as_deref(), records, output)?;
+    if dataset == AgentDataset::Rxr && !is_xlm {
+        let problem = "RxR's agents read the ids of XLM-RoBERTa's tokenizer, and this one is of BERT's family";
+        return Err(Error::usage(problem, format!("give --tokenizer {XLM_ROBERTA}, or another --dataset")));
+    }
+    fs::create_dir_all(out).map_err(Error::io(out, "make the folder"))?;
+    let mut parts: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (index, split) in splits.iter().enumerate() {
+        parts.entry(split).or_default().push(index);
+    }
+    let mut files = Vec::new();
+    for (split, indices) in parts {
+        let file = out.join(file_name(dataset, split, is_xlm));
+        tell_overwriting(&file, output);
+        files.extend(write_split(args, dataset, split, &file, (records, &ids, &indices), output)?);
+    }
+    tell_terms(records, output);
+    tell_written(out, files, &splits, output);
+    Ok(())
+}
+
+/// Refuses paths over open ground, because these agents walk a viewpoint graph.
+fn refuse_without_viewpoints(records: &[Record]) -> Result<(), Error> {
+    let is_blind = |record: &&Record| record.path.frames.iter().any(|frame| frame.viewpoint.is_none());
+    let Some(record) = records.iter().find(is_blind) else { return Ok(()) };
+    let problem = format!(
+        "path {} of platform {} names no viewpoints, and these agents need them",
+        record.path.id, record.platform
+    );
+    Err(Error::usage(problem, "use --format vlnce, wayword, parquet or hf"))
+}
+
+/// Writes the records of a split, and returns the files.
+fn write_split(
+    args: &Export,
+    dataset: AgentDataset,
+    split: &str,
+    file: &Path,
+    (records, ids, indices): (&[Record], &[Vec<u32>], &[usize]),
+    output: &Output,
+) -> Result<Vec<PathBuf>, Error> {
+    let format = match dataset {
+        AgentDataset::R2r => Format::R2r,
+        AgentDataset::Reverie => Format::Reverie,
+        AgentDataset::Rxr => Format::Rxr,
+    };
+    let of_split: Vec<Record> = indices.iter().map(|index| records[*index].clone()).collect();
+    let mut episodes = items::episodes(format, &args.run, &of_split, output);
+    for (episode, index) in episodes.iter_mut().zip(indices) {
+        episode.split = Some(split.to_owned());
+        episode.encodings = vec![ids[*index].clone()];
+    }
+    let beside = items::write(format, file, &of_split, episodes)?;
+    Ok([file.to_owned()].into_iter().chain(beside).collect())
+}
+
+/// The dataset that the texts resemble: the one that their style is named after, else REVERIE if most of them name a target, else R2R.
+fn usual(records: &[Record]) -> AgentDataset {
+    let is = |name: &str| records.iter().all(|record| record.instruction.style == name);
+    let names_target = |record: &&Record| {
+        record.path.target.is_some()
+            && record.instruction.mentions.iter().any(|mention| mention.kind == MentionKind::Target)
+    };
+    if is("r2r") {
+        AgentDataset::R2r
+    } else if is("rxr") {
+        AgentDataset::Rxr
+    } else if is("reverie") || records.iter().filter(names_target).count() * 2 > records.len() {
+        AgentDataset::Reverie
+    } else {
+        AgentDataset::R2r
+    }
+}
+
+/// The file name that the loaders expect.
+fn file_name(dataset: AgentDataset, split: &str, is_xlm: bool) -> String {
+    let tokens = if is_xlm { "enc_xlmr" } else { "enc" };
+    match dataset {
+        AgentDataset::R2r => format!("R2R_{split}_{tokens}.json"),
+        AgentDataset::Reverie => format!("REVERIE_{split}_{tokens}.json"),
+        AgentDataset::Rxr => format!("rxr_{split}_guide_{tokens}.jsonl"),
+    }
+}
+
+fn no_tokenizer() -> Error {
+    let problem = "--tokenizer is missing: these files hold the ids of the tokens that an agent was trained with";
+    let hint = format!(
+        "`wayword models fetch --tokenizer {BERT}` fetches that of VLN-DUET and VLN-HAMT; then give --tokenizer {BERT}. For RxR \
+         it is {XLM_ROBERTA}. A tokenizer.json of your own serves too"
+    );
+    Error::usage(problem, hint)
+}
+
+#[cfg(feature = "local")]
+fn encoded(tokenizer: Option<&str>, records: &[Record], output: &Output) -> Result<Encoded, Error> {
+    use wayword_local::{InstructionTokenizer, TokenizerKind};
+    let file = file_of(tokenizer.ok_or_else(no_tokenizer)?, output)?;
+    let tokenizer = InstructionTokenizer::load(&file)?;
+    let ids = records.iter().map(|record| tokenizer.ids(&record.instruction.text)).collect::<Result<_, _>>()?;
+    Ok(Encoded { is_xlm: tokenizer.kind() == TokenizerKind::XlmRoberta, ids })
+}
+
+/// The file of a tokenizer. If a model is named instead of a file, its tokenizer is downloaded unless it is on this machine already.
+#[cfg(feature = "local")]
+fn file_of(tokenizer: &str, output: &Output) -> Result<PathBuf, Error> {
+    use wayword_local::{Hub, HubConfig, ModelName, Needs};
+    use wayword_run::download_bar::DownloadBar;
+    let path = Path::new(tokenizer);
+    if path.exists() || !tokenizer.starts_with("hf/") {
+        return Ok(if path.is_dir() { path.join("tokenizer.json") } else { path.to_owned() });
+    }
+    let name = ModelName::parse(tokenizer)?;
+    let hub = Hub::new(HubConfig::from_env()?)?;
+    let folder = hub.folder(&name, &Needs::tokenizer(), &DownloadBar::new(output))?;
+    Ok(folder.path.join("tokenizer.json"))
+}
+
+#[cfg(not(feature = "local"))]
+fn encoded(tokenizer: Option<&str>, _records: &[Record], _output: &Output) -> Result<Encoded, Error> {
+    tokenizer.ok_or_else(no_tokenizer)?;
+    Err(Error::not_built("--format duet: this build has no tokenizers"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_named_as_the_loaders_ask() {
+        for (dataset, is_xlm, name) in [
+            (AgentDataset::R2r, false, "R2R_val_seen_enc.json"),
+            (AgentDataset::R2r, true, "R2R_val_seen_enc_xlmr.json"),
+            (AgentDataset::Reverie, false, "REVERIE_val_seen_enc.json"),
+            (AgentDataset::Reverie, true, "REVERIE_val_seen_enc_xlmr.json"),
+            (AgentDataset::Rxr, true, "rxr_val_seen_guide_enc_xlmr.jsonl"),
+        ] {
+            assert_eq!(file_name(dataset, "val_seen", is_xlm), name);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! `wayword export --highlight`: checks texts, and writes a page and a JSON file in which the doubtful words are marked.
+
+use crate::{
+    export::args::Export,
+    pages::doubts::{Highlights, write_json, write_page},
+};
+use serde::Serialize;
+use std::{
+    collections::BTreeSet,
+    fmt,
+    path::{Path, PathBuf},
+};
+use wayword_core::Grade;
+use wayword_run::{
+    check::{How, check_file},
+    count::count,
+    error::{Error, Exit},
+    output::Output,
+    run_folder::{file, settings_of},
+    settings::{Asked, AskedPlatform},
+};
+
+/// The written files, with how much in them is doubted. Printed at the end.
+#[derive(Debug, Serialize)]
+struct Written {
+    page: PathBuf,
+    file: PathBuf,
+    #[serde(flatten)]
+    highlights: Counts,
+}
+
+/// How much is doubted.
+#[derive(Debug, Serialize)]
+struct Counts {
+    texts: usize,
+    /// Texts with a doubt.
+    doubted: usize,
+    /// Texts that could not be followed, so that no other words are known.
+    unfollowed: usize,
+    words: usize,
+    /// Words that are likely wrong, and words that are uncertain.
+    likely: usize,
+    uncertain: usize,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Counts { texts, doubted, unfollowed, words, likely, uncertain } = &self.highlights;
+        writeln!(f, "{}: {doubted} with words to doubt", count(*texts, "text"))?;
+        writeln!(
+            f,
+            "{}: {likely} {}, {uncertain} {}",
+            count(*words, "word"),
+            Grade::Likely.told(),
+            Grade::Uncertain.told()
+        )?;
+        if *unfollowed > 0 {
+            writeln!(f, "not followed: {}", count(*unfollowed, "text"))?;
+        }
+        write!(f, "written to {} and {}", self.page.display(), self.file.display())
+    }
+}
+
+pub(super) fn write(args: &Export, name: &Path, output: &Output) -> Result<Exit, Error> {
+    let highlights = found(args, output)?;
+    let [page, file] = ["html", "json"].map(|end| file_of(name, end));
+    for old in [&page, &file].into_iter().filter(|old| old.exists()) {
+        output.say(format_args!("overwriting the old file {}", old.display()));
+    }
+    write_json(&file, &highlights)?;
+    write_page(&page, &highlights)?;
+    let summary = &highlights.summary;
+    let counts = Counts {
+        texts: summary.texts,
+        doubted: summary.doubted,
+        unfollowed: summary.unfollowed,
+        words: summary.words,
+        likely: summary.of(Grade::Likely),
+        uncertain: summary.of(Grade::Uncertain),
+    };
+    let written = Written { page, file, highlights: counts };
+    output.data(&written, &written);
+    Ok(Exit::Done)
+}
+
+/// The file with this name and ending. The user may have typed one of the two endings already; it is replaced.
+fn file_of(name: &Path, end: &str) -> PathBuf {
+    let is_page = name.extension().is_some_and(|end| end == "html" || end == "json");
+    let stem = if is_page { name.file_stem() } else { name.file_name() };
+    let mut file = stem.unwrap_or_default().to_owned();
+    file.push(".");
+    file.push(end);
+    name.with_file_name(file)
+}
+
+/// Checks the chosen texts, of a run or of a file, and returns their doubts.
+fn found(args: &Export, output: &Output) -> Result<Highlights, Error> {
+    refuse_what_datasets_bear(args)?;
+    let how = How { world: args.world, doubts: true, ..How::default() };
+    let report = match (&args.texts, &args.run[..]) {
+        (Some(texts), []) => {
+            let settings = Asked::from(args.platform.clone()).resolve()?;
+            check_file(texts, &settings, how, output)?
+        }
+        (None, [run]) => {
+            refuse_a_platform(args)?;
+            let how = How { captions: Some(run), ..how };
+            check_file(&run.join(file::INSTRUCTIONS), &settings_of(run)?, how, output)?
+        }
+        _ => {
+            let problem = "--highlight takes the texts of one run, or of one file";
+            return Err(Error::usage(problem, "give either --run RUN or --texts FILE, once"));
+        }
+    };
+    let styles: BTreeSet<String> = report.doubted.iter().filter_map(|text| text.style.clone()).collect();
+    let highlights = Highlights::of(report, args.style.as_deref());
+    if highlights.texts.is_empty() {
+        let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
+        let hint = if styles.is_empty() { "give a file with texts".to_owned() } else { format!("there are: {styles}") };
+        let of = args.style.as_ref().map_or_else(String::new, |style| format!(" of style {style}"));
+        return Err(Error::usage(format!("there is no text{of}"), hint));
+    }
+    Ok(highlights)
+}
+
+fn refuse_what_datasets_bear(args: &Export) -> Result<(), Error> {
+    if args.format.is_some() || args.out.is_some() || args.val_share.is_some() {
+        let problem = "--highlight writes no dataset, so --format, --out and --val-share say nothing";
+        return Err(Error::usage(problem, "leave them out, or export the dataset by itself"));
+    }
+    Ok(())
+}
+
+fn refuse_a_platform(args: &Export) -> Result<(), Error> {
+    if args.platform == AskedPlatform::default() {
+        return Ok(());
+    }
+    let problem = "a run knows its platform and data";
+    Err(Error::usage(problem, "leave out --platform, --data, --at and --island, or give --texts FILE"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_of_replaces_an_ending_that_the_user_typed() {
+        let names = |name: &str| ["html", "json"].map(|end| file_of(Path::new(name), end).display().to_string());
+        assert_eq!(names("a/doubts"), ["a/doubts.html", "a/doubts.json"]);
+        assert_eq!(names("a/doubts.html"), ["a/doubts.html", "a/doubts.json"]);
+        assert_eq!(names("v1.2"), ["v1.2.html", "v1.2.json"]);
+    }
+}

@@ -1,0 +1,178 @@
+//! Adds the data to VLN-CE episodes that the simulator Habitat needs: the scene's file, the corners of the path, and the distance over the
+//! navmesh. A VLN-CE
+//! path consists of straight lines, but the way between two frames can bend around furniture: hence the corners.
+
+use std::path::{Path, PathBuf};
+use wayword_core::{DVec3, Path as Walk, Platform, PlatformError, SceneId};
+use wayword_formats::{Episode, InHabitat, jsonl::Record};
+use wayword_house::seed_of;
+use wayword_run::{error::Error, platforms, run_folder::settings_of, stores};
+
+/// The folder in which habitat-lab keeps scenes; a `scene_id` is a path below it.
+const SCENES: &str = "scene_datasets";
+/// Corners closer together than this count as one, metres.
+const SAME_M: f64 = 1e-3;
+
+/// Where the scenes of a run can be looked up: its Habitat scenes and its generated houses.
+pub(super) struct World {
+    /// Habitat's own scenes, with the folder or file that they come from.
+    scenes: Option<(Box<dyn Platform>, PathBuf)>,
+    /// The generated houses, if the run has any.
+    houses: Option<Box<dyn Platform>>,
+    /// Why the first Habitat scene that failed could not be read.
+    lack: Option<String>,
+}
+
+impl World {
+    /// Opens the platforms of a run's records. If its Habitat scenes cannot be opened, they stay closed, and `warning` reports it.
+    pub(super) fn of(run: &Path, records: &[Record]) -> Self {
+        let has = |platform: &str| records.iter().any(|record| record.platform == platform);
+        let houses = has("house").then(|| platforms::open_named("house", None, None, None).ok()).flatten();
+        match has("habitat").then(|| scenes(run)).transpose() {
+            Ok(scenes) => Self { scenes, houses, lack: None },
+            Err(error) => Self { scenes: None, houses, lack: Some(first_line(&error)) },
+        }
+    }
+
+    /// Adds the scene's file, the corners and the distance to an episode, as far as they are known.
+    pub(super) fn tell(&mut self, record: &Record, episode: &mut Episode) {
+        let scene = &record.path.scene;
+        match (record.platform.as_str(), &self.scenes) {
+            ("habitat", Some((platform, data))) => {
+                if let Err(error) = tell_of_scene(&**platform, data, &record.path, episode) {
+                    self.lack.get_or_insert_with(|| first_line(&error));
+                    episode.in_habitat = without_scene(scene);
+                }
+            }
+            ("habitat", None) => episode.in_habitat = without_scene(scene),
+            ("matterport", _) => {}
+            ("house", _) => {
+                if let Some(houses) = &self.houses
+                    && let Ok(path) = around_corners(&**houses, &record.path, episode)
+                {
+                    episode.floor_positions = path;
+                }
+                episode.in_habitat = house(scene);
+            }
+            (other, _) => episode.in_habitat = unknown(other, scene),
+        }
+    }
+
+    /// The warning if Habitat scenes could not be opened.
+    pub(super) fn warning(&self) -> Option<String> {
+        let told = |lack: &String| {
+            format!(
+                "warning: the Habitat scenes cannot be opened ({lack}), so the path corners and distances in their episodes \
+                 come from the frames, not from the navmesh; make the scenes available and export again"
+            )
+        };
+        self.lack.as_ref().map(told)
+    }
+}
+
+/// The scenes that a run was made in, and where they come from.
+fn scenes(run: &Path) -> Result<(Box<dyn Platform>, PathBuf), Error> {
+    let settings = settings_of(run)?;
+    let platform = platforms::open(&settings)?;
+    let data = settings.data.as_deref().map(stores::local).transpose()?.unwrap_or_default().into_owned();
+    Ok((platform, data))
+}
+
+/// The first line of an error, without its hint, because a warning has one line.
+fn first_line(error: &impl ToString) -> String {
+    error.to_string().lines().next().unwrap_or_default().to_owned()
+}
+
+/// Adds file, corners and distance of a Habitat scene to an episode. On an error the positions on the floor are unchanged.
+fn tell_of_scene(
+    platform: &dyn Platform,
+    data: &Path,
+    walk: &Walk,
+    episode: &mut Episode,
+) -> Result<(), PlatformError> {
+    let file = platform.scene_file(&walk.scene)?;
+    let path = around_corners(platform, walk, episode)?;
+    episode.in_habitat.geodesic_m = geodesic_m(platform, walk)?;
+    episode.floor_positions = path;
+    episode.in_habitat.scene_id = file.map(|file| below_scenes(&file, data));
+    Ok(())
+}
+
+/// A scene's file as `scene_id` names it: below habitat-lab's folder of scenes if it is in one, else below the run's
+/// data.
+fn below_scenes(file: &Path, data: &Path) -> String {
+    let parts: Vec<_> = file.iter().map(|part| part.to_string_lossy()).collect();
+    let below = match parts.iter().rposition(|part| part == SCENES) {
+        Some(at) => &parts[at + 1..],
+        None => {
+            let above = if data.is_dir() { data.iter().count() } else { parts.len().saturating_sub(1) };
+            &parts[above.min(parts.len())..]
+        }
+    };
+    below.join("/")
+}
+
+/// The fields for a generated house. Habitat can load it once the user has saved it.
+fn house(scene: &SceneId) -> InHabitat {
+    let seed = seed_of(scene.as_str()).unwrap_or_default();
+    InHabitat {
+        scene_id: Some(format!("house/{scene}/{scene}.glb")),
+        scene_needs: Some(format!("save the house: wayword house --seed {seed} --paths 0 --out SCENES/house")),
+        geodesic_m: None,
+    }
+}
+
+/// The fields for a Habitat scene without a file that can be found.
+fn without_scene(scene: &SceneId) -> InHabitat {
+    let scene_id = format!("habitat/{scene}/{scene}.glb");
+    let needs = format!("put the scene's file at SCENES/{scene_id}, or export on a machine that has the run's scenes");
+    InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
+}
+
+/// The fields for a platform with scenes that Habitat cannot read.
+fn unknown(platform: &str, scene: &SceneId) -> InHabitat {
+    let scene_id = format!("{platform}/{scene}/{scene}.glb");
+    let needs =
+        format!("put your own scene at SCENES/{scene_id}, because platform {platform} has none that Habitat can read");
+    InHabitat { scene_id: Some(scene_id), scene_needs: Some(needs), geodesic_m: None }
+}
+
+/// The path of an episode with every corner of the way between two frames, so that each hop is a straight walk. It is
+/// as before if the platform knows no ways.
+fn around_corners(platform: &dyn Platform, walk: &Walk, episode: &Episode) -> Result<Vec<DVec3>, PlatformError> {
+    let floors = &episode.floor_positions;
+    let mut path: Vec<DVec3> = floors.first().copied().into_iter().collect();
+    for (frames, floor) in walk.frames.windows(2).zip(floors.iter().skip(1)) {
+        let way = platform.way(&walk.scene, &frames[0], &frames[1])?;
+        let corners = way.as_ref().map_or(&[][..], |way| &way.corners);
+        for corner in corners.iter().skip(1).rev().skip(1).rev() {
+            let is_new = path.last().is_none_or(|last| last.distance(*corner) > SAME_M);
+            if is_new && corner.distance(*floor) > SAME_M {
+                path.push(*corner);
+            }
+        }
+        path.push(*floor);
+    }
+    Ok(path)
+}
+
+/// The distance from start to goal over the navmesh, metres; `None` if the platform knows no ways.
+fn geodesic_m(platform: &dyn Platform, walk: &Walk) -> Result<Option<f64>, PlatformError> {
+    let (Some(first), Some(last)) = (walk.frames.first(), walk.frames.last()) else { return Ok(None) };
+    Ok(platform.way(&walk.scene, first, last)?.map(|way| way.length_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn below_scenes_strips_the_folder_of_scenes() {
+        let folder = tempfile::tempdir().unwrap();
+        let hm3d = Path::new("/x/scene_datasets/hm3d/val/00800-a/a.basis.glb");
+        assert_eq!(below_scenes(hm3d, Path::new("/x/scene_datasets/hm3d")), "hm3d/val/00800-a/a.basis.glb");
+        let own = folder.path().join("flats/flat.glb");
+        assert_eq!(below_scenes(&own, folder.path()), "flats/flat.glb");
+        assert_eq!(below_scenes(&own, &own), "flat.glb");
+    }
+}

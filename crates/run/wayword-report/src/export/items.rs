@@ -1,0 +1,186 @@
+//! Converts records to items of R2R, REVERIE, RxR and VLN-CE, and writes these formats.
+
+use super::in_habitat::World;
+use crate::export::args::ExportFormat;
+use serde_json::{Value, json};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+use wayword_core::ObjectId;
+use wayword_formats::{
+    Episode, Format, jsonl,
+    jsonl::Record,
+    r2r, reverie, rxr,
+    vlnce::{self, Dataset},
+    write_sidecar,
+};
+use wayword_run::{error::Error, output::Output};
+
+/// Height of the eye over the floor, metres: Matterport3D's camera, and the eye in houses. VLN-CE's positions are on
+/// the floor.
+const EYE_HEIGHT_M: f64 = 1.5;
+
+/// Whether items have a place for provenance: VLN-CE's loader fails on unknown fields, and an R2R item holds several
+/// instructions.
+fn bears_provenance(format: Format) -> bool {
+    matches!(format, Format::Reverie | Format::Rxr)
+}
+
+/// The records as items, one for each.
+pub fn episodes(format: Format, runs: &[PathBuf], records: &[Record], output: &Output) -> Vec<Episode> {
+    let mut episodes: Vec<Episode> = records.iter().map(|record| episode(record, bears_provenance(format))).collect();
+    if let (Format::Vlnce, [run]) = (format, runs) {
+        let mut world = World::of(run, records);
+        for (record, episode) in records.iter().zip(&mut episodes) {
+            world.tell(record, episode);
+        }
+        if let Some(warning) = world.warning() {
+            output.say(warning);
+        }
+    }
+    episodes
+}
+
+/// Writes one of these formats. If its items have no place for provenance, that goes into a second file in the same folder, and the
+/// name of that file is returned.
+pub fn write(
+    format: Format,
+    file: &Path,
+    records: &[Record],
+    episodes: Vec<Episode>,
+) -> Result<Option<PathBuf>, Error> {
+    match format {
+        Format::R2r => r2r::write(file, &episodes)?,
+        Format::Reverie => reverie::write(file, &gathered(episodes))?,
+        Format::Rxr => rxr::write(file, &episodes)?,
+        Format::Vlnce => vlnce::write(file, &Dataset::of(episodes))?,
+        Format::Wayword => jsonl::write(file, records)?,
+    }
+    if bears_provenance(format) {
+        return Ok(None);
+    }
+    let lines: Vec<Value> = records
+        .iter()
+        .map(|record| json!({"path": record.path.id, "text": record.instruction.text, "wayword": about(record)}))
+        .collect();
+    Ok(Some(write_sidecar(file, &lines)?))
+}
+
+/// A name for the episode of each record, in their order: that of its path, and where a path has several texts also the
+/// style and the number of the text.
+#[cfg(feature = "habitat")]
+pub fn episode_names(records: &[Record]) -> Vec<String> {
+    let mut texts: BTreeMap<&str, usize> = BTreeMap::new();
+    for record in records {
+        *texts.entry(&record.path.id).or_default() += 1;
+    }
+    let mut taken = std::collections::BTreeSet::new();
+    let name = |record: &Record| match texts.get(record.path.id.as_str()) {
+        Some(1) => record.path.id.clone(),
+        _ => format!("{}-{}", record.path.id, wayword_run::run_folder::name_of_text(record)),
+    };
+    let free = |name: String| {
+        let other = (2..).map(|number| format!("{name}_{number}"));
+        let found = std::iter::once(name.clone()).chain(other).find(|name| taken.insert(name.clone()));
+        found.unwrap_or(name)
+    };
+    records.iter().map(name).map(free).collect()
+}
+
+/// Refuses recordings without poses, because all of these formats contain the agent's position and heading.
+pub(super) fn refuse_without_poses(format: ExportFormat, records: &[Record]) -> Result<(), Error> {
+    match records.iter().find(|record| !record.path.motion.is_known()) {
+        Some(record) => Err(Error::usage(
+            format!("format {format} needs poses, and path {} is from a recording without poses", record.path.id),
+            "use --format wayword",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// REVERIE names an item by its path and object. Items that share a path, a start and an object, or have none, become one
+/// item with several instructions; those without an object that start with another heading become another path.
+fn gathered(episodes: Vec<Episode>) -> Vec<Episode> {
+    let mut items: Vec<Episode> = Vec::new();
+    let mut starts: BTreeMap<(String, Option<ObjectId>, Option<u64>), usize> = BTreeMap::new();
+    let mut starts_of_path: BTreeMap<String, usize> = BTreeMap::new();
+    for mut episode in episodes {
+        let object = episode.target_object.clone();
+        let start = (episode.path_id.clone(), object, episode.start_heading.map(|heading| heading.rad().to_bits()));
+        if let Some(at) = starts.get(&start) {
+            join(&mut items[*at], episode);
+            continue;
+        }
+        if episode.target_object.is_some() {
+            starts.insert(start, items.len());
+            items.push(episode);
+            continue;
+        }
+        let others = starts_of_path.entry(episode.path_id.clone()).or_default();
+        if *others > 0 {
+            episode.path_id = format!("{}-{others}", episode.path_id);
+        }
+        *others += 1;
+        starts.insert(start, items.len());
+        items.push(episode);
+    }
+    items
+}
+
+fn join(item: &mut Episode, other: Episode) {
+    item.instructions.extend(other.instructions);
+    item.encodings.extend(other.encodings);
+    for (key, value) in other.extra {
+        if let (Some(Value::Array(all)), Value::Array(more)) = (item.extra.get_mut(&key), value) {
+            all.extend(more);
+        }
+    }
+}
+
+/// A record as an item of a dataset. Provenance is a list, one entry for each instruction.
+fn episode(record: &Record, with_provenance: bool) -> Episode {
+    let mut episode =
+        Episode::from_path(&record.path, vec![record.instruction.text.clone()]).on_floor_of(&record.path, EYE_HEIGHT_M);
+    episode.path_id = record.path_id();
+    if with_provenance {
+        episode.extra.insert("wayword".into(), json!([about(record)]));
+    }
+    episode
+}
+
+fn about(record: &Record) -> Value {
+    json!({
+        "verdict": record.instruction.verdict,
+        "provenance": record.instruction.provenance,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{Heading, SceneId};
+
+    fn episode(path_id: &str, object: Option<&str>, heading: f64, text: &str) -> Episode {
+        let mut episode = Episode::new(text, path_id, SceneId::new("s").unwrap());
+        episode.target_object = object.map(|object| ObjectId::new(object).unwrap());
+        episode.start_heading = Some(Heading::new(heading).unwrap());
+        episode.instructions = vec![text.to_owned()];
+        episode.extra.insert("wayword".into(), json!([text]));
+        episode
+    }
+
+    #[test]
+    fn reverie_items_without_an_object_gather_by_path_and_start() {
+        let items = gathered(vec![
+            episode("7", None, 1.0, "a"),
+            episode("7", Some("3"), 1.0, "b"),
+            episode("7", None, 1.0, "c"),
+            episode("7", None, 2.0, "d"),
+            episode("7", Some("3"), 1.0, "e"),
+        ]);
+        let told: Vec<_> = items.iter().map(|item| (item.path_id.as_str(), item.instructions.join(" "))).collect();
+        assert_eq!(told, [("7", "a c".into()), ("7", "b e".into()), ("7-1", "d".into())]);
+        assert_eq!(items[0].extra["wayword"], json!(["a", "c"]));
+    }
+}

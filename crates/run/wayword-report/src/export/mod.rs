@@ -1,0 +1,232 @@
+//! `wayword export`: checks the flags, reads and merges the runs' records, and writes them in the chosen format.
+
+pub mod args;
+#[cfg(feature = "parquet")]
+mod card;
+mod duet;
+mod highlight;
+mod in_habitat;
+pub mod items;
+mod splits;
+#[cfg(not(feature = "habitat"))]
+#[path = "no_steps.rs"]
+mod steps;
+#[cfg(feature = "habitat")]
+mod steps;
+pub mod steps_args;
+#[cfg(feature = "habitat")]
+pub use steps::{Replayed, replayed};
+#[cfg(not(feature = "parquet"))]
+#[path = "no_table.rs"]
+mod table;
+#[cfg(feature = "parquet")]
+mod table;
+
+use crate::export::{
+    args::{Export, ExportFormat},
+    steps_args::AskedSteps,
+};
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::{Path, PathBuf},
+};
+use wayword_formats::{Format, jsonl, jsonl::Record, split};
+use wayword_run::{
+    check::args::AskedWorld,
+    count::count,
+    error::{Error, Exit},
+    output::Output,
+    run_folder::{file, refuse_unmerged},
+    settings::AskedPlatform,
+    terms,
+};
+
+/// Most scenes for which the screen lists what the user has to do.
+const NEEDS_SHOWN: usize = 5;
+
+/// Result of an export into one file.
+#[derive(Debug, Serialize)]
+struct Written {
+    instructions: usize,
+    file: PathBuf,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    provenance: Option<PathBuf>,
+    /// Steps that the user has to take before Habitat finds the scenes.
+    #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+    scene_needs: BTreeSet<String>,
+}
+
+/// Result of an export into several files.
+#[derive(Debug, Serialize)]
+struct WrittenSplits {
+    instructions: usize,
+    /// Instructions by split.
+    splits: BTreeMap<String, usize>,
+    files: Vec<PathBuf>,
+}
+
+pub fn run(args: &Export, output: &Output) -> Result<Exit, Error> {
+    if let Some(name) = &args.highlight {
+        return highlight::write(args, name, output);
+    }
+    let (format, out) = asked(args)?;
+    refuse_what_does_not_fit(args, format)?;
+    let mut records = records(&args.run, args.style.as_deref())?;
+    if let Some(share) = args.val_share {
+        split(&mut records, share, args.seed);
+    }
+    match format {
+        ExportFormat::Duet => duet::write(args, out, &records, output)?,
+        ExportFormat::Parquet => table::write(args, out, &records, output)?,
+        ExportFormat::Hf => table::publish(args, out, &records, output)?,
+        ExportFormat::Steps => return steps::write(args, out, &records, output),
+        ExportFormat::R2r | ExportFormat::Reverie | ExportFormat::Rxr | ExportFormat::Vlnce | ExportFormat::Wayword => {
+            one_file(args, format, out, &records, output)?;
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// Refuses flags that belong to `--highlight`, and returns the format and the place to write to.
+fn asked(args: &Export) -> Result<(ExportFormat, &Path), Error> {
+    if args.texts.is_some() || args.platform != AskedPlatform::default() || args.world != AskedWorld::default() {
+        let problem = "--texts, --world and the flags of a platform are for --highlight";
+        return Err(Error::usage(problem, "leave them out, or give --highlight NAME"));
+    }
+    let lacks = |what: &str| {
+        Error::usage(format!("{what} is missing"), "give --run, --format and --out for a dataset, or --highlight NAME")
+    };
+    if args.run.is_empty() {
+        return Err(lacks("--run"));
+    }
+    let format = args.format.ok_or_else(|| lacks("--format"))?;
+    Ok((format, args.out.as_deref().ok_or_else(|| lacks("--out"))?))
+}
+
+fn refuse_what_does_not_fit(args: &Export, format: ExportFormat) -> Result<(), Error> {
+    let refused = |problem: String, hint: &str| Err(Error::usage(problem, hint));
+    if !format.takes_several_runs() && args.run.len() > 1 {
+        return refused(
+            format!("format {format} takes one run only"),
+            "merge runs with --format wayword, parquet or hf",
+        );
+    }
+    let splits_itself = format.says_splits() || format == ExportFormat::Wayword;
+    if args.val_share.is_some() && !splits_itself {
+        let problem = format!("format {format} has no splits within a file");
+        return refused(problem, "use --val-share with --format wayword, rxr, duet, parquet, hf or steps");
+    }
+    if let Some(share) = args.val_share.filter(|share| !(0.0..=1.0).contains(share)) {
+        return refused(format!("--val-share {share} is not a share"), "give a number from 0 to 1");
+    }
+    if args.split.is_some() && (args.val_share.is_some() || format == ExportFormat::Wayword) {
+        let problem = "--split puts all texts into one split, and --val-share and --format wayword divide them";
+        return refused(problem.to_owned(), "give one of the two; for --format wayword, --val-share");
+    }
+    if !format.takes_all_styles() && args.style.is_none() {
+        return refused(format!("a file of format {format} has texts of one style only"), "choose it with --style");
+    }
+    if format != ExportFormat::Duet && (args.tokenizer.is_some() || args.dataset.is_some()) {
+        return refused("--tokenizer and --dataset are for --format duet".to_owned(), "leave them out");
+    }
+    if format != ExportFormat::Steps && args.steps != AskedSteps::default() {
+        return refused("the flags of steps are for --format steps".to_owned(), "leave them out");
+    }
+    Ok(())
+}
+
+/// The records of runs, merged; only those of one style if it is named.
+fn records(runs: &[PathBuf], style: Option<&str>) -> Result<Vec<Record>, Error> {
+    runs.iter().try_for_each(|run| refuse_unmerged(run))?;
+    let files: Vec<PathBuf> = runs.iter().map(|run| run.join(file::INSTRUCTIONS)).collect();
+    let mut records = jsonl::merge(&files)?;
+    let styles: BTreeSet<String> = records.iter().map(|record| record.instruction.style.clone()).collect();
+    records.retain(|record| style.is_none_or(|style| record.instruction.style == style));
+    if records.is_empty() {
+        let runs = runs.iter().map(|run| run.display().to_string()).collect::<Vec<_>>().join(", ");
+        return Err(match style.filter(|_| !styles.is_empty()) {
+            Some(style) => {
+                let styles = styles.into_iter().collect::<Vec<_>>().join(", ");
+                Error::usage(format!("{runs}: no instruction of style {style}"), format!("there are: {styles}"))
+            }
+            None => Error::usage(format!("{runs}: no instruction"), "see errors.jsonl and rejected.jsonl of the run"),
+        });
+    }
+    Ok(records)
+}
+
+/// Writes a format that is one file.
+fn one_file(args: &Export, format: ExportFormat, out: &Path, records: &[Record], output: &Output) -> Result<(), Error> {
+    let Some(of_file) = format.of_one_file() else { return Ok(()) };
+    let splits = splits_of(args, format, records, output)?;
+    tell_overwriting(out, output);
+    let mut scene_needs = BTreeSet::new();
+    let provenance = if of_file == Format::Wayword {
+        jsonl::write(out, records)?;
+        None
+    } else {
+        items::refuse_without_poses(format, records)?;
+        let mut episodes = items::episodes(of_file, &args.run, records, output);
+        for (episode, split) in episodes.iter_mut().zip(splits) {
+            episode.split = Some(split);
+        }
+        scene_needs.extend(episodes.iter().filter_map(|episode| episode.in_habitat.scene_needs.clone()));
+        items::write(of_file, out, records, episodes)?
+    };
+    tell_needs(&scene_needs, output);
+    tell_terms(records, output);
+    let written = Written { instructions: records.len(), file: out.to_owned(), provenance, scene_needs };
+    let beside =
+        written.provenance.as_ref().map_or(String::new(), |file| format!("; provenance in {}", file.display()));
+    output.data(
+        &written,
+        format_args!("{} written to {}{beside}", count(written.instructions, "instruction"), out.display()),
+    );
+    Ok(())
+}
+
+/// The split of each record, if the format contains splits or the user chose one. Otherwise the list is empty, and texts in scenes
+/// that are officially held out cause only a message.
+fn splits_of(args: &Export, format: ExportFormat, records: &[Record], output: &Output) -> Result<Vec<String>, Error> {
+    if format.says_splits() || args.split.is_some() {
+        return splits::of_records(args, records);
+    }
+    if args.val_share.is_none() {
+        splits::tell_held_out(records, output);
+    }
+    Ok(Vec::new())
+}
+
+fn tell_overwriting(file: &Path, output: &Output) {
+    if file.exists() {
+        output.say(format_args!("overwriting the old file {}", file.display()));
+    }
+}
+
+fn tell_terms(records: &[Record], output: &Output) {
+    terms::tell(records.iter().map(|record| record.platform.as_str()), output);
+}
+
+fn tell_needs(scene_needs: &BTreeSet<String>, output: &Output) {
+    if scene_needs.is_empty() {
+        return;
+    }
+    output.say(format_args!("do this so that Habitat finds the scenes (SCENES is its folder of scenes, scenes_dir):"));
+    scene_needs.iter().take(NEEDS_SHOWN).for_each(|needs| output.say(format_args!("  {needs}")));
+    if let Some(more) = scene_needs.len().checked_sub(NEEDS_SHOWN).filter(|more| *more > 0) {
+        output.say(format_args!("  and {more} more; info.scene_needs of each episode says what it needs"));
+    }
+}
+
+/// Prints the result of an export into several files.
+fn tell_written(out: &Path, files: Vec<PathBuf>, splits: &[String], output: &Output) {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for split in splits {
+        *counts.entry(split.clone()).or_default() += 1;
+    }
+    let each: Vec<String> = counts.iter().map(|(split, count)| format!("{split} {count}")).collect();
+    let instructions = count(splits.len(), "instruction");
+    let written = WrittenSplits { instructions: splits.len(), splits: counts, files };
+    output.data(&written, format_args!("{instructions} written to {} ({})", out.display(), each.join(", ")));
+}

@@ -1,0 +1,81 @@
+//! Verifies an export of trajectories by walking them again: do the actions lead to the end of the path, and do the poses give the
+//! same pictures?
+
+use super::{settings::Steps, store::picture};
+use crate::walking::{Scenes, feet};
+use serde::Serialize;
+use std::{collections::BTreeMap, path::Path};
+use wayword_core::DVec3;
+use wayword_formats::{
+    jsonl,
+    trajectories::{Trajectory, pictures, read},
+};
+use wayword_habitat::walk::{Stance, replay};
+use wayword_run::{
+    error::Error,
+    run_folder::{config_of, file, settings_of},
+};
+
+/// A pose counts as the written one if it is closer to it than this, metres.
+const SAME_M: f64 = 0.001;
+
+/// Counts of a replay.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Replayed {
+    /// Walks that were replayed.
+    pub walks: usize,
+    /// Walks in which the ground blocked a step, or a pose differed from the written one.
+    pub astray: usize,
+    /// The largest distance between the last place of an agent and the last frame of its walk, metres.
+    pub farthest_off_m: f64,
+    /// Pictures that were drawn again.
+    pub pictures: usize,
+    /// Pictures that differ from the written ones.
+    pub others: usize,
+}
+
+/// Replays the walks of an export in `folder`, and draws every n-th of their pictures. `run` is the run that was exported.
+///
+/// # Errors
+/// When a file breaks a rule of its format, or a scene cannot be drawn.
+pub fn replayed(folder: &Path, run: &Path, every: usize) -> Result<Replayed, Error> {
+    let steps: Steps = config_of(folder)?;
+    let scenes = Scenes::open(&settings_of(run)?, [steps.width_px, steps.height_px])?;
+    let ends: BTreeMap<String, DVec3> = jsonl::read(&run.join(file::INSTRUCTIONS))?
+        .into_iter()
+        .filter_map(|record| feet(&record.path).last().map(|end| (record.path.id, *end)))
+        .collect();
+    let mut told = Replayed::default();
+    for trajectory in read(&folder.join(super::store::TRAJECTORIES))? {
+        told.walks += 1;
+        match end(&trajectory, &scenes, &steps)?.zip(ends.get(&trajectory.id)) {
+            Some((end, wanted)) => {
+                told.farthest_off_m = told.farthest_off_m.max((end - *wanted).truncate().length());
+            }
+            None => told.astray += 1,
+        }
+        for (number, written) in pictures(folder, &trajectory)?.into_iter().enumerate().step_by(every.max(1)) {
+            told.pictures += 1;
+            told.others += usize::from(picture(&scenes, &steps, &trajectory, number)? != written);
+        }
+    }
+    Ok(told)
+}
+
+/// The place to which the actions of a walk lead; `None` if a step is blocked, or a pose differs from the written one.
+fn end(trajectory: &Trajectory, scenes: &Scenes, steps: &Steps) -> Result<Option<DVec3>, Error> {
+    let ground = scenes.ground(&trajectory.scene)?;
+    let (Some(first), Some(heading)) = (trajectory.positions.first(), trajectory.headings.first()) else {
+        return Ok(None);
+    };
+    let Some(foothold) = ground.nearest(*first) else { return Ok(None) };
+    let start = Stance::new(foothold, *heading);
+    let taken: Option<Vec<DVec3>> = replay(&ground, start, &trajectory.actions, steps.gait()?)
+        .map(|stance| stance.map(|stance| stance.foothold.place))
+        .collect();
+    let is_same = |taken: &Vec<DVec3>| {
+        taken.len() == trajectory.actions.len() + 1
+            && taken.iter().zip(&trajectory.positions).all(|(a, b)| a.distance(*b) < SAME_M)
+    };
+    Ok(taken.filter(is_same).and_then(|taken| taken.last().copied()))
+}

@@ -1,0 +1,271 @@
+//! The sentences around the figures of a comparison: subject, warnings, and notes on how to read it. Every format shows the same and
+//! escapes the text itself.
+
+use super::figures::{DEAF, Figure, deaf, name, other_path};
+use wayword_metrics::{Metric, Rule};
+use wayword_navigation::comparison::{About, AgentKind, Comparison, FEWEST_PATHS, Listening, Set, Swapped};
+use wayword_run::count::count;
+
+/// The agents that read.
+const READER: &str = "reader";
+const READER_MAP: &str = "reader-map";
+/// The agent by a language model.
+const TOOLS: &str = "tools";
+
+/// The platform and episodes of the comparison, with the number of items and paths.
+pub(super) fn subject(about: &About) -> String {
+    format!(
+        "{}, {}: {} on {}",
+        name(&about.platform),
+        name(&about.episodes),
+        count(about.items, "item"),
+        count(about.paths, "path")
+    )
+}
+
+/// The rule of success.
+pub(super) fn success(rule: Rule) -> String {
+    let rule = match rule {
+        Rule::Distance => "the agent stops less than 3 m from the goal (R2R's rule; REVERIE's own is stricter)",
+        Rule::Visible => "the target is visible where the agent stops (REVERIE's rule)",
+    };
+    format!("Success: {rule}.")
+}
+
+/// A set, its source and its size.
+pub(super) fn set(set: &Set) -> String {
+    let from = if set.source.is_empty() || set.source == set.name {
+        String::new()
+    } else {
+        format!(" ({})", name(&set.source))
+    };
+    let left_out = match set.left_out {
+        0 => String::new(),
+        left_out => format!("; {} left out, because another set lacks them", count(left_out, "item")),
+    };
+    format!("{}{from}: {} of {:.1} words{left_out}", name(&set.name), count(set.texts, "text"), set.words)
+}
+
+/// Warnings, shown first: agents with rows that give no evidence about the instructions, because another path's instruction does not
+/// make them worse, or this was not tested enough.
+pub(super) fn warnings(comparison: &Comparison) -> Vec<String> {
+    let lost = |swapped: &Swapped| {
+        let lost = swapped.lost.figures.get(&Metric::SuccessRate);
+        lost.map_or_else(String::new, |lost| {
+            let paths = count(lost.clusters, "path");
+            format!(" (it costs {} points of SR on {paths})", Figure::of(Metric::SuccessRate, lost))
+        })
+    };
+    let note = |swapped: &Swapped| {
+        format!(
+            "{DEAF} {} is not shown to do worse with another path's instruction{}, so its rows say nothing about the instructions.",
+            name(&swapped.agent),
+            lost(swapped)
+        )
+    };
+    let mut warnings: Vec<String> = deaf(comparison).map(note).collect();
+    let is_tested = |agent: &str| {
+        other_path(comparison).any(|swapped| swapped.agent == agent && swapped.listening != Listening::TooFew)
+    };
+    let mut untested: Vec<String> = Vec::new();
+    for row in comparison.rows.iter().filter(|row| row.kind == AgentKind::Agent && !is_tested(&row.agent)) {
+        let agent = name(&row.agent);
+        if !untested.contains(&agent) {
+            untested.push(agent);
+        }
+    }
+    if !untested.is_empty() {
+        let agents = untested.join(", ");
+        warnings.push(format!(
+            "{agents}: the swap test with another path's instruction covers fewer than {FEWEST_PATHS} paths, so its rows may say nothing about the instructions."
+        ));
+    }
+    warnings
+}
+
+/// The agents that are shown to follow their instructions, and by how much.
+pub(super) fn listeners(comparison: &Comparison) -> Vec<String> {
+    let note = |swapped: &Swapped| {
+        let lost = swapped.lost.figures.get(&Metric::SuccessRate).filter(|_| swapped.listening == Listening::Shown)?;
+        let lost = Figure::of(Metric::SuccessRate, lost);
+        let paths = count(swapped.lost.figures.get(&Metric::SuccessRate)?.clusters, "path");
+        let agent = name(&swapped.agent);
+        Some(format!(
+            "{agent} follows its instructions: another path's instruction costs it {lost} points of SR on {paths}."
+        ))
+    };
+    other_path(comparison).filter_map(note).collect()
+}
+
+/// How all figures were made, and how to read them.
+pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
+    let mut notes = of_table(comparison);
+    notes.extend(of_differences(comparison));
+    notes.push(made_by(&comparison.about));
+    notes
+}
+
+/// The notes for a table without differences and swaps.
+pub(super) fn notes_of_table(comparison: &Comparison) -> Vec<String> {
+    let mut notes = of_table(comparison);
+    notes.push(made_by(&comparison.about));
+    notes
+}
+
+fn made_by(about: &About) -> String {
+    format!("Made by Wayword {}.", name(&about.wayword))
+}
+
+fn of_table(comparison: &Comparison) -> Vec<String> {
+    let about = &comparison.about;
+    let mut notes = vec![
+        format!(
+            "A row is the mean over the {}, and an item the mean over its texts. Rates and shares are in per cent.",
+            count(about.items, "item")
+        ),
+        format!(
+            "Intervals [low, high] cover {}: percentile bootstrap, {} resamples, seed {}, clustered by path ({} on {}), because items on one path are not independent.",
+            level(about.level),
+            about.resamples,
+            about.seed,
+            count(about.items, "item"),
+            count(about.paths, "path")
+        ),
+    ];
+    notes.extend(grounding(comparison));
+    if about.parameters.keys().any(|agent| ![READER, TOOLS].contains(&agent.as_str())) {
+        notes.push(format!("Instructions are split into phrases by {}.", name(&about.splitter)));
+    }
+    notes.extend(readers(comparison));
+    if comparison.rows.iter().any(|row| row.kind != AgentKind::Agent) {
+        notes.push(
+            "A lower bound reads no instruction. An agent that knows the map also knows the label of every room, and reads which room is meant. The upper bound knows the goal."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// The information that the reading agents get besides the instruction. Ground truth is named, so that it is not mistaken for perception.
+fn readers(comparison: &Comparison) -> Vec<String> {
+    let about = &comparison.about;
+    let has = |agent: &str| comparison.rows.iter().any(|row| row.agent == agent);
+    let mut notes = Vec::new();
+    if has(READER) {
+        let things = match about.grounder.starts_with("labels") {
+            true => "and by which way each labelled object lies".to_owned(),
+            false => format!("and which things its text names score high enough by {}", name(&about.grounder)),
+        };
+        notes.push(format!(
+            "{READER} is told at each viewpoint the ways out, the name of the room {things}. Rooms and labels are ground truth, not perception."
+        ));
+    }
+    if let Some(prior) = about.prior.as_deref().filter(|_| has(READER_MAP)) {
+        let walks = match prior.strip_prefix("shortest:") {
+            Some(hops) => format!("the shortest path to each viewpoint {} hops away", name(hops)),
+            None => "walks of two shortest pieces".to_owned(),
+        };
+        notes.push(format!(
+            "{READER_MAP} knows the whole graph, every room and every label: ground truth, not perception. It chooses among {walks}. What it reaches by an empty text, its weights alone reach: only what it gains over that comes from the instruction."
+        ));
+    }
+    let has_weights = !notes.is_empty();
+    notes.extend(about.tools.as_ref().filter(|_| has(TOOLS)).map(|(llm, see)| by_tools(llm, see)));
+    if has_weights {
+        notes
+            .push("The weights of the agents that read were fitted to the train splits of R2R and REVERIE.".to_owned());
+    }
+    notes
+}
+
+/// The information that the agent by a language model gets, and how its walks are scored.
+fn by_tools(llm: &str, see: &str) -> String {
+    let sees = match see {
+        "labels" => {
+            "It is told the room, and labels of what is around it with their distances: ground truth, not perception"
+                .to_owned()
+        }
+        "pictures" => "It is shown four pictures of what is around it".to_owned(),
+        see => format!("It is told what {} says of four pictures around it", name(see)),
+    };
+    format!(
+        "{TOOLS} is {}, which calls tools to look around, to step and to stop. {sees}. Replies of no use are counted over all walks; \"ended by a limit\" counts walks that ended at the most hops, calls or money, in circles, or after replies of no use. All walks are scored as they stand.",
+        name(llm)
+    )
+}
+
+/// How to read differences and swaps, if there are any.
+fn of_differences(comparison: &Comparison) -> Vec<String> {
+    let mut notes = Vec::new();
+    if comparison.rows.iter().any(|row| row.against_first.is_some()) || !comparison.swaps.is_empty() {
+        notes.push(
+            "McNemar's p (on the first text of each item) is descriptive, because it treats items as independent and they are not."
+                .to_owned(),
+        );
+    }
+    if comparison.rows.iter().any(|row| row.against_first.is_some()) {
+        notes.push(
+            "\"Only this\" and \"only first\" count the items on which only one of the two sets leads to success."
+                .to_owned(),
+        );
+    }
+    if !comparison.swaps.is_empty() {
+        notes.push(
+            "Swaps: the loss is the figure with the original texts minus the figure with the swapped ones, over the texts that the swap changes. An agent follows what was swapped if the interval of its loss of SR is above 0."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// How the views are scored. Ground-truth labels are named, so that they are not mistaken for perception.
+fn grounding(comparison: &Comparison) -> Vec<String> {
+    let about = &comparison.about;
+    let nature =
+        |grounder: &str| if grounder.starts_with("labels") { ": ground-truth labels, not perception" } else { "" };
+    let detects = |agent: &str| agent.starts_with("glip");
+    let encoder =
+        about.encoder.as_deref().map_or_else(String::new, |encoder| format!(", encoded by {}", name(encoder)));
+    let mut notes = vec![format!("Views are scored by {}{encoder}{}.", name(&about.grounder), nature(&about.grounder))];
+    if about.grounder.starts_with("labels") && about.rule == Rule::Visible {
+        notes.push(
+            "The same labels score the views and decide whether the target is visible, so an agent recognises success more easily than one that has to see."
+                .to_owned(),
+        );
+    }
+    if about.parameters.keys().any(|agent| agent != TOOLS) {
+        notes.push(match about.swept {
+            true => "The thresholds of the agents were chosen on REVERIE's train split.".to_owned(),
+            false => {
+                "The thresholds of the agents were not chosen for this grounder: read its rows with care.".to_owned()
+            }
+        });
+    }
+    if about.failed > 0 {
+        notes.push(format!(
+            "{} could not be walked, because a model failed on one of their texts.",
+            count(about.failed, "item")
+        ));
+    }
+    if comparison.rows.iter().any(|row| detects(&row.agent)) {
+        let (detector, nature) = (name(&about.detector), nature(&about.detector));
+        notes.push(if about.detector.starts_with("labels") {
+            format!("GLIP-Nav uses a label detector ({detector}{nature}): --detector names a network.")
+        } else {
+            let score = about.detector_score.as_deref().unwrap_or("the score of its best box");
+            format!("GLIP-Nav walks by the boxes of {detector}, each phrase looked for by itself where phrases meet: {score}.")
+        });
+    }
+    if about.grounder.starts_with("labels") && comparison.sets.len() > 1 {
+        notes.push(
+            "Instructions that were written from the same labels share the grounder's words. If such a set does better than people's here, that does not mean that it would with an agent that has to see."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// A level in words: 0.95 is `95 %`.
+fn level(level: f64) -> String {
+    format!("{} %", (1000.0 * level).round() / 10.0)
+}

@@ -1,0 +1,244 @@
+//! Draws a run as HTML pages that load no other files: map, frames, dialogue, captions, instructions and checks.
+//!
+//! A page is made item by item, so that memory does not limit its size, and the same run gives the same bytes.
+//! Everything from files or models is untrusted: the templates escape it, and the pages' content security policy
+//! forbids scripts and remote addresses.
+
+mod book;
+pub mod comparison;
+pub(crate) mod data_uri;
+pub mod doubts;
+mod frames;
+pub(crate) mod map;
+mod model;
+mod order;
+mod page;
+pub(crate) mod palette;
+mod pictures;
+mod places;
+mod records;
+pub mod replay;
+pub mod robustness;
+mod rows;
+pub(crate) mod sheet;
+mod spans;
+mod texts;
+
+use book::{Book, WALKS_PER_PAGE};
+use minijinja::{AutoEscape, Environment, UndefinedBehavior, Value, context};
+use model::ItemView;
+use page::PageView;
+use pictures::Pictures;
+use places::anchor;
+use records::Records;
+use rows::Rows;
+use serde::Serialize;
+use std::{
+    fmt,
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    ops::Range,
+    path::{Path, PathBuf},
+};
+use wayword_run::{count::count, error::Error};
+
+/// Result of a report: its files, and how much of the run they show.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Written {
+    /// The page, or the overview where there are several.
+    pub page: String,
+    /// Pages of paths, in their order.
+    pub pages: Vec<String>,
+    /// Items that are shown.
+    pub items: usize,
+    /// Items of the run that are not shown.
+    pub left_out: usize,
+    /// Pictures that are shown.
+    pub pictures: usize,
+    /// Pictures of these items that are not shown: missing, not a JPEG, too large, or the page was full.
+    pub pictures_left_out: usize,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.page)?;
+        if let (Some(first), Some(last)) = (self.pages.first(), self.pages.last()) {
+            write!(f, " and {} beside it, {first} to {last}", count(self.pages.len(), "page"))?;
+        }
+        write!(f, ": {}, {}", count(self.items, "item"), count(self.pictures, "picture"))?;
+        if self.left_out > 0 {
+            write!(f, "; {} left out (--items N shows more)", count(self.left_out, "item"))?;
+        }
+        if self.pictures_left_out > 0 {
+            write!(f, "; {} left out", count(self.pictures_left_out, "picture"))?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes the report of a run, with at most `most_items` of its items; those with texts that did not pass come first.
+/// The new files replace old ones only when all of them are complete.
+///
+/// # Errors
+/// When `run` is not a run folder, a line of it is not of its kind, another report's file is where a page of paths
+/// belongs, or a page cannot be written.
+pub fn write(run: &Path, out: &Path, most_items: usize) -> Result<Written, Error> {
+    write_paged(run, out, most_items, WALKS_PER_PAGE)
+}
+
+fn write_paged(run: &Path, out: &Path, most_items: usize, per_page: usize) -> Result<Written, Error> {
+    let records = Records::read(run, most_items)?;
+    let book = Book::new(out, run, records.items.len(), per_page);
+    book.refuse_to_replace_others()?;
+    let mut written = Written {
+        page: out.display().to_string(),
+        pages: (1..=book.pages()).map(|page| book.file(page).display().to_string()).collect(),
+        items: records.items.len(),
+        left_out: records.left_out,
+        pictures: 0,
+        pictures_left_out: 0,
+    };
+    let templates = templates().map_err(broken)?;
+    let sheet = Sheet { records: &records, book: &book, templates: &templates, run };
+    let mut unfinished = Vec::new();
+    for page in (1..=book.pages()).map(Some).chain([None]) {
+        let file = page.map_or_else(|| out.to_owned(), |page| book.file(page));
+        let (made, pictures) = Unfinished::write(&file, |take| sheet.draw(page, take))?;
+        unfinished.push(made);
+        written.pictures += pictures.shown;
+        written.pictures_left_out += pictures.left_out;
+    }
+    unfinished.into_iter().try_for_each(Unfinished::finish)?;
+    book.remove_older_pages()?;
+    Ok(written)
+}
+
+/// Receives a page part by part, and writes or stores it.
+type Take<'a> = dyn FnMut(&str) -> Result<(), Error> + 'a;
+
+/// Writes a page; it replaces an old one only when it is complete.
+fn replace<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<T, Error> {
+    let (page, told) = Unfinished::write(out, render)?;
+    page.finish()?;
+    Ok(told)
+}
+
+/// A page under a temporary name. If it is dropped before it is finished, it is removed.
+struct Unfinished {
+    file: PathBuf,
+    out: PathBuf,
+}
+
+impl Unfinished {
+    fn write<T>(out: &Path, render: impl FnOnce(&mut Take<'_>) -> Result<T, Error>) -> Result<(Self, T), Error> {
+        let mut name = out.file_name().unwrap_or_default().to_owned();
+        name.push(".new");
+        let unfinished = Self { file: out.with_file_name(name), out: out.to_owned() };
+        let file = &unfinished.file;
+        let mut page = BufWriter::new(File::create(file).map_err(Error::io(file, "write"))?);
+        let told = render(&mut |part| page.write_all(part.as_bytes()).map_err(Error::io(file, "write")))?;
+        page.into_inner().map_err(io::IntoInnerError::into_error).map_err(Error::io(file, "write"))?;
+        Ok((unfinished, told))
+    }
+
+    fn finish(self) -> Result<(), Error> {
+        fs::rename(&self.file, &self.out).map_err(Error::io(&self.out, "write"))
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // After `finish` the file has another name, and this call fails without harm.
+        let _ = fs::remove_file(&self.file);
+    }
+}
+
+/// Everything from which the pages of a report are drawn.
+struct Sheet<'a> {
+    records: &'a Records,
+    book: &'a Book<'a>,
+    templates: &'a Environment<'static>,
+    run: &'a Path,
+}
+
+impl Sheet<'_> {
+    /// Draws a page of paths (from 1), or the overview for `None`, and hands it to `take` part by part.
+    fn draw(&self, page: Option<usize>, take: &mut Take<'_>) -> Result<Pictures, Error> {
+        let Self { records, book, .. } = self;
+        let pager = book.pager(page);
+        let walks: Range<usize> = match page {
+            Some(page) => book.walks(page),
+            None if pager.is_none() => 0..records.items.len(),
+            None => 0..0,
+        };
+        let all = records.items.len() + records.left_out;
+        let (first, last, shown) = (walks.start + 1, walks.end, records.items.len());
+        let around = context! { pager, first, last, shown, walks => all, platform => records.settings.platform };
+        match page {
+            Some(_) => {
+                let view = context! { page_of => book.page_of(), ..around.clone() };
+                self.draw_part("leaf.html", view, take)?;
+            }
+            None => {
+                let rows = Rows::of(records, |walk| book.address(walk, &anchor(walk + 1)));
+                let view = context! { ..Value::from_serialize(PageView::new(records)), ..Value::from_serialize(rows), ..around.clone() };
+                self.draw_part("head.html", view, take)?;
+            }
+        }
+        let mut pictures = Pictures::of(self.run);
+        for (at, record) in walks.clone().zip(&records.items[walks]) {
+            let view = Value::from_serialize(ItemView::new(at + 1, record, &mut pictures));
+            self.draw_part("item.html", view, take)?;
+        }
+        self.draw_part("pager.html", around, take)?;
+        take(include_str!("foot.html"))?;
+        Ok(pictures)
+    }
+
+    fn draw_part(&self, name: &str, view: Value, take: &mut Take<'_>) -> Result<(), Error> {
+        let part = self.templates.get_template(name).and_then(|template| template.render(view));
+        take(&part.map_err(broken)?)
+    }
+}
+
+fn templates() -> Result<Environment<'static>, minijinja::Error> {
+    let mut templates = Environment::new();
+    templates.set_undefined_behavior(UndefinedBehavior::Strict);
+    templates.set_auto_escape_callback(|name| if name.ends_with(".css") { AutoEscape::None } else { AutoEscape::Html });
+    templates.set_trim_blocks(true);
+    templates.set_lstrip_blocks(true);
+    templates.set_keep_trailing_newline(true);
+    templates.add_function("count", |number: u64, of: &str| count(number, of));
+    templates.add_template("style.css", include_str!("style.css"))?;
+    templates.add_template("signs.html", include_str!("signs.html"))?;
+    templates.add_template("open.html", include_str!("open.html"))?;
+    templates.add_template("head.html", include_str!("head.html"))?;
+    templates.add_template("rows.html", include_str!("rows.html"))?;
+    templates.add_template("rows.css", include_str!("rows.css"))?;
+    templates.add_template("filter.css", include_str!("filter.css"))?;
+    templates.add_template("leaf.html", include_str!("leaf.html"))?;
+    templates.add_template("pager.html", include_str!("pager.html"))?;
+    templates.add_template("map.html", include_str!("map.html"))?;
+    templates.add_template("text.html", include_str!("text.html"))?;
+    templates.add_template("item.html", include_str!("item.html"))?;
+    templates.add_template("comparison.css", include_str!("comparison/style.css"))?;
+    templates.add_template("comparison.html", include_str!("comparison/page.html"))?;
+    templates.add_template("table.html", include_str!("comparison/table.html"))?;
+    templates.add_template("forest.html", include_str!("comparison/forest.html"))?;
+    templates.add_template("robustness.css", include_str!("robustness/style.css"))?;
+    templates.add_template("robustness.html", include_str!("robustness/page.html"))?;
+    templates.add_template("foot.html", include_str!("foot.html"))?;
+    templates.add_template("doubts.css", include_str!("doubts/style.css"))?;
+    templates.add_template("doubts.html", include_str!("doubts/page.html"))?;
+    templates.add_template("replay.html", include_str!("replay/replay.html"))?;
+    Ok(templates)
+}
+
+// A closure's argument cannot be a reference where `map_err` gives the value away.
+#[allow(clippy::needless_pass_by_value)]
+fn broken(error: minijinja::Error) -> Error {
+    Error::usage(format!("the page cannot be drawn: {error:#}"), "report this as a bug")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,157 @@
+//! The top of a report: settings, roles and results of the run.
+
+use super::records::{Counts, Records, RolesPlayed};
+use serde::Serialize;
+use std::path::Path;
+use wayword_run::{
+    platforms::has_hops,
+    settings::{Perception, Settings, Sources, TargetMode},
+};
+use wayword_synthesis::walk::FrameSelection;
+
+/// The template's values for the top of the report.
+#[derive(Debug, Serialize)]
+pub(super) struct PageView {
+    settings: Vec<(&'static str, String)>,
+    roles: Vec<RolesView>,
+    outcome: Vec<StyleView>,
+    left_out: usize,
+    /// Items that failed, shown or not.
+    failed: usize,
+    failed_left_out: usize,
+    /// Whether a text of the run may mean several places or objects.
+    is_ambiguous: bool,
+}
+
+/// Who asked, answered, wrote and checked: each line has a name and its part in the work.
+#[derive(Debug, Serialize)]
+struct RolesView {
+    lines: Vec<(String, String)>,
+}
+
+#[derive(Debug, Serialize)]
+struct StyleView {
+    name: String,
+    passed: usize,
+    unverified: usize,
+    rejected: usize,
+    ambiguous: usize,
+}
+
+impl PageView {
+    pub(super) fn new(records: &Records) -> Self {
+        let style = |(name, counts): (&String, &Counts)| StyleView {
+            name: name.clone(),
+            passed: counts.passed,
+            unverified: counts.unverified,
+            rejected: counts.rejected,
+            ambiguous: counts.ambiguous,
+        };
+        Self {
+            settings: settings(&records.settings),
+            roles: records.roles.iter().map(roles).collect(),
+            outcome: records.counts.iter().map(style).collect(),
+            left_out: records.left_out,
+            failed: records.failed.len() + records.failed_left_out,
+            failed_left_out: records.failed_left_out,
+            is_ambiguous: records.counts.values().any(|counts| counts.ambiguous > 0),
+        }
+    }
+}
+
+/// Each role's part in the work, in words that distinguish ground truth from perception.
+fn roles(roles: &RolesPlayed) -> RolesView {
+    let answered = match roles.answerer.as_str() {
+        "labels" => "answered: ground truth of the platform, not perception",
+        _ => "answered: perception by a model",
+    };
+    let checked = match roles.checked_against.as_str() {
+        "labels" => "were the evidence for the checks: ground truth of the platform",
+        "captions" => "were the evidence for the checks: they share the answerer's mistakes",
+        _ => "was the evidence for the checks",
+    };
+    let wrote = match (roles.writer.as_str(), &roles.finished_for) {
+        ("rules", None) => "wrote: no language model".to_owned(),
+        (_, Some(first)) => format!("wrote, after every text of {first} had failed its checks"),
+        (_, None) => "wrote".to_owned(),
+    };
+    let line = |who: &str, did: &str| (who.to_owned(), did.to_owned());
+    RolesView {
+        lines: vec![
+            line(&roles.asker, "asked"),
+            line(&roles.answerer, answered),
+            line(&roles.summariser, "summarised"),
+            line(&roles.writer, &wrote),
+            line(&roles.checked_against, checked),
+            line(&format!("Wayword {}", roles.wayword), "ran all of this"),
+        ],
+    }
+}
+
+/// The settings in words, without folders: a page that is passed on should not reveal its maker's machine.
+fn settings(settings: &Settings) -> Vec<(&'static str, String)> {
+    let file = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let (hops, length_m) = (&settings.request.hops, &settings.request.length_m);
+    let hops = match has_hops(settings) {
+        true => format!(", {} to {} hops", hops.start(), hops.end()),
+        false => String::new(),
+    };
+    let paths = settings.episodes.as_deref().map_or_else(
+        || format!("{} random{hops}, {} to {} m", settings.paths, length_m.start(), length_m.end()),
+        |episodes| format!("of {}", file(episodes)),
+    );
+    let style = |style: &String| match style.split_once('=') {
+        Some((name, dataset)) => format!("{name} (texts of {})", file(Path::new(dataset))),
+        None => file(Path::new(style)),
+    };
+    let views = match settings.frames {
+        FrameSelection::Central => "central: the view along the heading",
+        FrameSelection::Panoramic => "panoramic: four views, condensed",
+    };
+    let questions = match settings.perception {
+        Perception::Dialogue => format!("dialogue, at most {} per view", settings.questions),
+        Perception::Fixed => "fixed object and room queries, no dialogue".to_owned(),
+        Perception::Structured => "one structured request per view".to_owned(),
+        Perception::FollowUp => {
+            format!("one structured request per view, then at most {} about what it left open", settings.questions)
+        }
+        Perception::Single => "one request for a description, no dialogue".to_owned(),
+    };
+    let target = match settings.target {
+        TargetMode::Given => "given to the writer",
+        TargetMode::Free => "the writer's choice",
+    };
+    let Sources { labels, captions, detector } = settings.evidence;
+    let heard = match (captions, detector) {
+        (true, true) => "captions and the detector",
+        (false, true) => "the detector only",
+        (_, false) => "captions only",
+    };
+    let against = if labels {
+        format!("labels if there are any, else {}", heard.trim_end_matches(" only"))
+    } else {
+        heard.to_owned()
+    };
+    let calibration = settings.calibration.as_deref().map(|path| ("Calibration of labels", file(path)));
+    let mut told = vec![
+        ("Paths", paths),
+        ("Styles", settings.style.iter().map(style).collect::<Vec<_>>().join(", ")),
+        ("Views", views.to_owned()),
+        ("Questions", questions),
+        ("Object of the task", target.to_owned()),
+        ("Texts are checked against", against),
+        ("Repairs", format!("at most {}", settings.repairs)),
+        ("Texts written, of which one is kept", settings.candidates.to_string()),
+        ("Seed", settings.seed.to_string()),
+    ];
+    told.extend(calibration);
+    told.extend(settings.roles.detector.clone().map(|name| ("Detector", name)));
+    told.extend(settings.reject_ambiguous.then(|| ("Ambiguous texts", "rejected".to_owned())));
+    if !settings.scan.is_empty() {
+        told.insert(1, ("Scenes", settings.scan.join(", ")));
+    }
+    if let Some(limit) = settings.limit {
+        told.insert(1, ("Limit", format!("the first {limit}")));
+    }
+    told
+}

@@ -1,0 +1,122 @@
+//! Loads the pictures of frames for a page, only from the run's own folder.
+
+use super::data_uri;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use wayword_run::{
+    pictures::{Kept, kept},
+    run_folder::file,
+};
+
+/// All pictures of a page together, bytes, so that a phone can open it.
+const MOST_BYTES_TOGETHER: u64 = 64 << 20;
+
+/// A picture inside a page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub(super) struct Picture {
+    /// `data:` address.
+    pub(super) address: String,
+    pub(super) width_px: u32,
+    pub(super) height_px: u32,
+}
+
+/// The pictures of a run.
+pub(super) struct Pictures {
+    folder: PathBuf,
+    left_bytes: u64,
+    /// How many the page shows.
+    pub(super) shown: usize,
+    /// How many are not shown: they are missing, too large, not a JPEG, or the page was full.
+    pub(super) left_out: usize,
+}
+
+impl Pictures {
+    pub(super) fn of(run: &Path) -> Self {
+        Self { folder: run.join(file::FRAMES), left_bytes: MOST_BYTES_TOGETHER, shown: 0, left_out: 0 }
+    }
+
+    /// The picture of a frame (from 0) of an item.
+    pub(super) fn take(&mut self, item: &str, frame: usize) -> Option<Picture> {
+        let picture = self.load(item, frame);
+        *if picture.is_some() { &mut self.shown } else { &mut self.left_out } += 1;
+        picture
+    }
+
+    fn load(&mut self, item: &str, frame: usize) -> Option<Picture> {
+        let Kept { jpeg, width_px, height_px } = kept(&self.folder, item, frame, self.left_bytes)?;
+        self.left_bytes = self.left_bytes.saturating_sub(jpeg.len() as u64);
+        Some(Picture { address: data_uri::jpeg(&jpeg), width_px, height_px })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::ImageFormat;
+    use std::{fs, io::Cursor};
+    use wayword_run::pictures::{MOST_BYTES, MOST_SIDE_PX};
+
+    fn jpeg(width_px: u32, height_px: u32) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let picture = image::RgbImage::from_pixel(width_px, height_px, image::Rgb([90, 120, 200]));
+        picture.write_to(&mut Cursor::new(&mut bytes), ImageFormat::Jpeg).unwrap();
+        bytes
+    }
+
+    fn run() -> tempfile::TempDir {
+        let run = tempfile::tempdir().unwrap();
+        fs::create_dir(run.path().join(file::FRAMES)).unwrap();
+        run
+    }
+
+    #[test]
+    fn a_picture_is_given_with_its_size() {
+        let run = run();
+        fs::write(run.path().join("frames/a_0.jpg"), jpeg(6, 4)).unwrap();
+        let mut pictures = Pictures::of(run.path());
+        let picture = pictures.take("a", 0).unwrap();
+        assert_eq!((picture.width_px, picture.height_px), (6, 4));
+        assert!(picture.address.starts_with("data:image/jpeg;base64,/9j/"));
+        assert_eq!(pictures.take("a", 1), None);
+        assert_eq!((pictures.shown, pictures.left_out), (1, 1));
+    }
+
+    #[test]
+    fn names_that_lead_out_of_the_folder_are_refused() {
+        let run = run();
+        fs::write(run.path().join("secret_0.jpg"), jpeg(6, 4)).unwrap();
+        fs::create_dir(run.path().join("frames/deep")).unwrap();
+        fs::write(run.path().join("frames/deep/a_0.jpg"), jpeg(6, 4)).unwrap();
+        let absolute = run.path().join("secret").display().to_string();
+        for bad in ["../secret", "deep/a", "./../secret", absolute.as_str(), "a\0"] {
+            assert_eq!(Pictures::of(run.path()).take(bad, 0), None, "{bad:?}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        let run = run();
+        fs::write(run.path().join("secret.jpg"), jpeg(6, 4)).unwrap();
+        std::os::unix::fs::symlink("../secret.jpg", run.path().join("frames/a_0.jpg")).unwrap();
+        assert_eq!(Pictures::of(run.path()).take("a", 0), None);
+    }
+
+    #[test]
+    fn take_leaves_out_large_files_and_other_formats() {
+        let run = run();
+        fs::write(run.path().join("frames/a_0.jpg"), "<svg onload='alert(1)'/>").unwrap();
+        fs::write(run.path().join("frames/a_1.jpg"), vec![0xff; MOST_BYTES as usize + 1]).unwrap();
+        fs::write(run.path().join("frames/a_2.jpg"), jpeg(MOST_SIDE_PX + 1, 1)).unwrap();
+        let mut pictures = Pictures::of(run.path());
+        assert!((0..3).all(|frame| pictures.take("a", frame).is_none()));
+    }
+
+    #[test]
+    fn a_full_page_takes_no_more() {
+        let run = run();
+        fs::write(run.path().join("frames/a_0.jpg"), jpeg(6, 4)).unwrap();
+        let mut pictures = Pictures { left_bytes: 10, ..Pictures::of(run.path()) };
+        assert_eq!(pictures.take("a", 0), None);
+    }
+}

@@ -1,0 +1,220 @@
+//! Replays of agents' walks, step by step: the scores of the views, the choices, and where the agent went back.
+
+mod choose;
+mod steps;
+
+pub use choose::Sample;
+
+use super::{
+    map::{MapView, RADIUS, Trail},
+    places::frame_anchor,
+};
+use serde::Serialize;
+use steps::{StepView, steps};
+use wayword_core::{DVec3, ViewpointGraph, ViewpointId};
+use wayword_metrics::{Outcome, Rule, Score};
+use wayword_navigation::{
+    comparison::UNREAD,
+    walk::{Choice, Effort, End, Walk},
+};
+use wayword_run::{count::count, run_folder::Map};
+
+/// Most steps of a walk that are shown.
+const MOST_STEPS: usize = 100;
+/// Most key phrases of an instruction that are shown.
+const MOST_PHRASES: usize = 50;
+/// Longest text, characters.
+const MOST_TEXT_CHARS: usize = 2_000;
+
+/// A walk, with the path that it is compared with.
+#[derive(Debug, Clone, Copy)]
+pub struct Replay<'a> {
+    /// The walk.
+    pub walk: &'a Walk,
+    /// The scene's graph.
+    pub graph: &'a ViewpointGraph,
+    /// The annotated path, from start to goal.
+    pub reference: &'a [ViewpointId],
+    /// How well the walk did.
+    pub score: &'a Score,
+    /// The rule of success.
+    pub rule: Rule,
+}
+
+/// A line of the list of walks.
+#[derive(Debug, Serialize)]
+pub(super) struct Entry {
+    anchor: String,
+    title: String,
+    /// The outcome: class and words of its mark.
+    class: &'static str,
+    sign: &'static str,
+}
+
+impl Entry {
+    /// The line for a walk; `number` from 1.
+    pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
+        let walk = replay.walk;
+        let (class, sign) = mark(replay.outcome());
+        let set = Some(&walk.set).filter(|set| *set != UNREAD);
+        let names: Vec<String> =
+            [Some(&walk.agent), set, Some(&walk.item)].into_iter().flatten().map(|name| short(name)).collect();
+        let names = names.join(", ");
+        // Anchors are numbers, because names come from files.
+        Self { anchor: format!("r{number}"), title: format!("{names} (text {})", walk.text_index + 1), class, sign }
+    }
+}
+
+/// A walk, ready for its template.
+#[derive(Debug, Serialize)]
+pub(super) struct ReplayView {
+    /// From 1.
+    number: usize,
+    #[serde(flatten)]
+    entry: Entry,
+    meta: Vec<String>,
+    text: String,
+    reads_nothing: bool,
+    phrases: Vec<String>,
+    phrases_left_out: usize,
+    /// `None` if the agent does not read.
+    activity: Option<String>,
+    map: Option<MapView>,
+    map_radius: f64,
+    map_stop: &'static str,
+    map_words: String,
+    steps: Vec<StepView>,
+    steps_left_out: usize,
+    /// Lowest and highest score, between which bars are drawn; `None` without scores.
+    score_range: Option<(String, String)>,
+}
+
+impl ReplayView {
+    /// A walk; `number` from 1.
+    pub(super) fn new(number: usize, replay: &Replay<'_>) -> Self {
+        let walk = replay.walk;
+        let entry = Entry::new(number, replay);
+        let shown = walk.steps.len().min(MOST_STEPS);
+        let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
+        let (steps, score_range) = steps(walk, shown, |step| frame_anchor(&entry.anchor, step + 1));
+        Self {
+            number,
+            entry,
+            meta: replay.meta(),
+            text: bounded(&walk.text),
+            reads_nothing: walk.set == UNREAD,
+            phrases: phrases.iter().take(MOST_PHRASES).map(|phrase| bounded(phrase)).collect(),
+            phrases_left_out: phrases.len().saturating_sub(MOST_PHRASES),
+            activity: walk.directions.as_ref().map(|directions| bounded(&directions.activity)),
+            map: replay.map(shown),
+            map_radius: RADIUS,
+            map_stop: "Step",
+            map_words: format!("Map of the walk from step 1 to step {shown}, north up, with the annotated path"),
+            steps,
+            steps_left_out: walk.steps.len() - shown,
+            score_range,
+        }
+    }
+}
+
+impl Replay<'_> {
+    fn outcome(&self) -> Option<Outcome> {
+        match self.rule {
+            Rule::Distance => Some(self.score.distance),
+            Rule::Visible => self.score.visible,
+        }
+    }
+
+    /// Scene, length, end and outcome of the walk, in words.
+    fn meta(&self) -> Vec<String> {
+        let (walk, score) = (self.walk, self.score);
+        let end = match walk.end {
+            End::Stopped => "the agent stopped",
+            End::Cap => "it reached the limit of its steps",
+            End::DeadEnd => "it reached a dead end",
+            End::Calls => "it made the most calls that it may",
+            End::Money => "its model cost what a walk may cost",
+            End::Circles => "it walked in circles",
+            End::NoUse => "its model gave no reply of use",
+        };
+        let off = score.navigation_error_m.map_or_else(
+            || "its end has no connection to the goal".to_owned(),
+            |error_m| format!("ends {error_m:.1} m from the goal"),
+        );
+        let mut meta = vec![
+            format!("Scene {}", walk.scene),
+            count(walk.steps.len(), "step"),
+            format!("{:.1} m", score.length_m),
+            off,
+            end.to_owned(),
+        ];
+        match self.outcome() {
+            Some(outcome) if outcome.success => meta.push(format!("SPL {:.0} %", 100.0 * outcome.spl)),
+            Some(outcome) if outcome.oracle_success => {
+                meta.push("it passed a viewpoint that counts as success".to_owned());
+            }
+            _ => {}
+        }
+        if let Some(object) = &walk.object {
+            let judged = match score.grounding {
+                Some(grounding) if grounding.rgs => ", the target",
+                Some(_) => ", not the target",
+                None => "",
+            };
+            meta.push(format!("names object {object} as the target{judged}"));
+        }
+        meta.extend(walk.effort.as_ref().map(took));
+        meta
+    }
+
+    fn map(&self, shown: usize) -> Option<MapView> {
+        let places = |ids: &mut dyn Iterator<Item = &ViewpointId>| -> Option<Vec<DVec3>> {
+            ids.map(|id| self.graph.position(id)).collect()
+        };
+        let steps = &self.walk.steps[..shown];
+        let stops = places(&mut steps.iter().map(|step| &step.viewpoint))?;
+        let annotated = places(&mut self.reference.iter().take(MOST_STEPS))?;
+        let backs: Vec<bool> = steps.iter().map(|step| step.choice == Choice::Back).collect();
+        let around: Vec<DVec3> = stops.iter().chain(&annotated).copied().collect();
+        let start = steps.first()?.heading_rad;
+        MapView::draw(
+            &Map::near(&around, self.graph),
+            &Trail {
+                stops: &stops,
+                start,
+                backs: &backs,
+                annotated: &annotated,
+                first_number: 1,
+                is_numbered_once: true,
+            },
+        )
+    }
+}
+
+/// The effort of a language model in a walk, in words.
+fn took(effort: &Effort) -> String {
+    let Effort { calls, tokens_in, tokens_out, usd, seconds, .. } = effort;
+    let usd = usd.filter(|usd| *usd > 0.0).map_or_else(String::new, |usd| format!(", ${usd:.4}"));
+    format!("{}, {tokens_in} tokens in, {tokens_out} out{usd}, {seconds:.1} s", count(*calls, "call"))
+}
+
+fn mark(outcome: Option<Outcome>) -> (&'static str, &'static str) {
+    match outcome {
+        Some(outcome) if outcome.success => ("good", "✓ success"),
+        Some(_) => ("bad", "✗ no success"),
+        None => ("open", "? not judged"),
+    }
+}
+
+/// A text, cut so that the page stays small enough for a phone.
+fn bounded(text: &str) -> String {
+    text.chars().take(MOST_TEXT_CHARS).collect()
+}
+
+/// A name, cut for headings.
+fn short(name: &str) -> String {
+    name.chars().take(80).collect()
+}
+
+#[cfg(test)]
+pub(super) mod tests;

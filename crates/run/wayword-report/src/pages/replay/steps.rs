@@ -1,0 +1,148 @@
+//! The steps of a replayed walk: the agent's place, the scores of its views, and its choice.
+
+use crate::pages::palette::{Colour, colour};
+use serde::Serialize;
+use wayword_core::Compass;
+use wayword_navigation::walk::{Choice, Scored, Step, Told, Walk};
+use wayword_run::count::count;
+
+/// Longest phrase in a cell, characters.
+const MOST_PHRASE_CHARS: usize = 120;
+
+/// Longest reason, characters.
+const MOST_REASON_CHARS: usize = 400;
+
+/// A step.
+#[derive(Debug, Serialize)]
+pub(super) struct StepView {
+    /// From 1.
+    number: usize,
+    anchor: String,
+    /// The first step (from 1) at this viewpoint, if this one returns to it. The map shows its number.
+    again: Option<usize>,
+    colour: Colour,
+    heading: String,
+    /// The current phrase; `None` if the agent does not look by phrases.
+    phrase: Option<String>,
+    /// The room and things that a reading agent was informed of; `None` for other agents.
+    told: Option<String>,
+    /// Empty if the agent does not look.
+    views: Vec<ViewView>,
+    class: &'static str,
+    then: String,
+    /// The reason for the choice, in a model's own words.
+    reason: Option<String>,
+}
+
+/// A view with its scores.
+#[derive(Debug, Serialize)]
+struct ViewView {
+    direction: &'static str,
+    is_chosen: bool,
+    ways: usize,
+    phrase: Bar,
+    activity: Bar,
+}
+
+/// A score with its bar.
+#[derive(Debug, Serialize)]
+struct Bar {
+    score: String,
+    /// Length of the bar, per cent.
+    long: u32,
+}
+
+/// The lowest and the highest score of a walk, between which bars are drawn.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+/// The first `shown` steps of a walk, and the range of the bars.
+pub(super) fn steps(
+    walk: &Walk,
+    shown: usize,
+    anchor: impl Fn(usize) -> String,
+) -> (Vec<StepView>, Option<(String, String)>) {
+    let range = Range::of(walk);
+    let step = |(at, step): (usize, &Step)| StepView {
+        number: at + 1,
+        anchor: anchor(at),
+        again: walk.steps[..at].iter().position(|other| other.viewpoint == step.viewpoint).map(|first| first + 1),
+        colour: colour(at, shown),
+        heading: format!("{:.0}°", step.heading_rad.deg()),
+        phrase: (!step.views.is_empty()).then(|| phrase(walk, step)),
+        told: step.told.as_ref().map(told),
+        views: step.views.iter().zip(Compass::ALL).enumerate().map(|(at, view)| look(step, at, view, range)).collect(),
+        class: match step.choice {
+            Choice::Onward(_) | Choice::Unseeing => "onward",
+            Choice::Back => "backward",
+            Choice::Stop => "stopped",
+        },
+        then: then(step.choice),
+        reason: step.reason.as_ref().map(|reason| reason.chars().take(MOST_REASON_CHARS).collect()),
+    };
+    let views = walk.steps.iter().take(shown).enumerate().map(step).collect();
+    (views, range.map(|range| (number(range.low), number(range.high))))
+}
+
+fn look(step: &Step, at: usize, (view, direction): (&Scored, Compass), range: Option<Range>) -> ViewView {
+    let bar = |score: f32| Bar { score: number(score), long: range.map_or(0, |range| range.long(score)) };
+    ViewView {
+        direction: direction.word(),
+        is_chosen: step.choice == Choice::Onward(at),
+        ways: view.ways,
+        phrase: bar(view.phrase),
+        activity: bar(view.activity),
+    }
+}
+
+fn phrase(walk: &Walk, step: &Step) -> String {
+    let phrases = walk.directions.as_ref().map_or(&[][..], |directions| &directions.phrases);
+    phrases.get(step.phrase).map_or_else(
+        || "the activity alone".to_owned(),
+        |phrase| format!("{}. {}", step.phrase + 1, phrase.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
+    )
+}
+
+fn told(told: &Told) -> String {
+    let room = match &told.room {
+        Some(room) => format!("in room {}", room.chars().take(MOST_PHRASE_CHARS).collect::<String>()),
+        None => "in a room without a name".to_owned(),
+    };
+    format!("{room}, {} on, {}", count(told.ways, "way"), count(told.things, "thing"))
+}
+
+fn then(choice: Choice) -> String {
+    match choice {
+        Choice::Onward(view) => {
+            format!("goes on {}", Compass::ALL.get(view).map_or("through no view", |direction| direction.word()))
+        }
+        Choice::Unseeing => "goes on".to_owned(),
+        Choice::Back => "goes back".to_owned(),
+        Choice::Stop => "stays here".to_owned(),
+    }
+}
+
+impl Range {
+    fn of(walk: &Walk) -> Option<Self> {
+        let scores = walk.steps.iter().flat_map(|step| &step.views).flat_map(|view| [view.phrase, view.activity]);
+        let with = |range: Option<Self>, score: f32| {
+            let Self { low, high } = range.unwrap_or(Self { low: score, high: score });
+            Some(Self { low: low.min(score), high: high.max(score) })
+        };
+        scores.filter(|score| score.is_finite()).fold(None, with)
+    }
+
+    fn long(self, score: f32) -> u32 {
+        let (low, high) = (f64::from(self.low), f64::from(self.high));
+        // If all scores are equal, a bar is either full or empty.
+        let share = if high > low { (f64::from(score) - low) / (high - low) } else { f64::from(score) };
+        (100.0 * share).clamp(0.0, 100.0).round() as u32
+    }
+}
+
+fn number(score: f32) -> String {
+    if score.abs() < 1e4 { format!("{score:.2}") } else { format!("{score:.1e}") }
+}

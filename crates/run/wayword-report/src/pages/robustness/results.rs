@@ -1,0 +1,138 @@
+//! The results of a robustness run, as they are stored in `robustness.json`.
+
+use serde::{Deserialize, Serialize};
+use wayword_metrics::Estimate;
+use wayword_robustness::ratio::Robustness;
+
+/// How many of the texts that were written again in the unchanged world are equal to the run's own.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Again {
+    pub equal: usize,
+    pub of: usize,
+}
+
+/// All results of a run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Results {
+    /// The platform of the run.
+    pub platform: String,
+    /// Who answered and who wrote, in words.
+    pub roles: String,
+    /// Number of paths, and of scenes.
+    pub paths: usize,
+    pub scenes: usize,
+    /// How many of the texts of the unchanged world are those of the run.
+    pub again: Again,
+    /// The agent that walks by the texts; its success is compared.
+    pub agent: String,
+    /// Level of the intervals.
+    pub level: f64,
+    /// One for each style.
+    pub styles: Vec<OfStyle>,
+    /// Changes that make no sense on this platform, each with the reason.
+    pub refused: Vec<Refused>,
+}
+
+/// A change that was not made.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Refused {
+    pub change: String,
+    pub reason: String,
+}
+
+/// The results for the texts of one style.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct OfStyle {
+    pub style: String,
+    /// Changes that are measured by R, in the order in which they were asked for.
+    pub changes: Vec<OfChange>,
+    /// Changes with an exact expectation.
+    pub expectations: Vec<Expectation>,
+    /// One for each change with several doses.
+    pub curves: Vec<Curve>,
+}
+
+/// The results for one change: how much it matters to the texts.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct OfChange {
+    /// The change with its dose: `camera_height_m=0.3`.
+    pub change: String,
+    /// Paths with a text in the unchanged and the changed world.
+    pub paths: usize,
+    /// Paths with a text that failed only in the changed world.
+    pub lost: usize,
+    /// Of landmarks, turns, rooms, floors, and their mean.
+    pub figures: Vec<Figure>,
+    /// Change of the agent's success rate: changed less unchanged.
+    pub success: Option<Estimate>,
+    /// Pairs of texts from the unchanged and the changed world.
+    pub examples: Vec<Example>,
+}
+
+/// R of one kind of statement, with the agreements that it is made of.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Figure {
+    /// `landmarks`, `turns`, `rooms`, `floors` or `mean`.
+    pub kind: String,
+    pub r: Option<Estimate>,
+    /// Why there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) reason: Option<String>,
+    /// Agreement with the text of the changed world, of the same run once more, and of another path.
+    pub(crate) changed: Option<f64>,
+    pub(crate) repeat: Option<f64>,
+    pub(crate) other: Option<f64>,
+}
+
+/// An exact expectation, and how many texts keep it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Expectation {
+    pub change: String,
+    /// The property that has to hold, in words.
+    pub expected: String,
+    /// Texts that mention the thing.
+    pub told: usize,
+    /// Those of them for which it holds.
+    pub holds: usize,
+    /// Texts for which it does not hold, with the difference.
+    pub examples: Vec<Example>,
+}
+
+/// Two texts of one path.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Example {
+    pub path: String,
+    pub before: String,
+    pub after: String,
+    /// The difference, in words.
+    pub note: String,
+}
+
+/// R of the mean over doses.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Curve {
+    /// The change without its dose.
+    pub change: String,
+    /// The dose without any effect, where there is one.
+    pub unchanged: Option<f64>,
+    /// Dose, and R with its interval where there is one.
+    pub points: Vec<(f64, Option<Estimate>)>,
+    /// Change of R for one more of the dose's unit; `None` of a single point.
+    pub slope: Option<f64>,
+    /// The doses at which R falls below 0.8, below and above the unchanged one where there is one.
+    pub falls_at: Vec<f64>,
+}
+
+impl From<Robustness> for Figure {
+    fn from(found: Robustness) -> Self {
+        let Robustness { kind, r, reason, changed, again, other, .. } = found;
+        Self { kind, r, reason, changed, repeat: again, other }
+    }
+}
+
+impl Expectation {
+    /// The share of texts for which it holds; `None` if no text mentions the thing.
+    pub fn share(&self) -> Option<f64> {
+        (self.told > 0).then(|| self.holds as f64 / self.told as f64)
+    }
+}

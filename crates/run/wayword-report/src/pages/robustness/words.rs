@@ -1,0 +1,66 @@
+//! Compares two texts word by word, and marks the words that differ. Words of the longest common subsequence are equal.
+
+use serde::Serialize;
+
+/// Consecutive words that are in both texts, or only in one.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+pub(super) struct Words {
+    words: String,
+    differs: bool,
+}
+
+/// The words of both texts, grouped into equal and differing ones, by their longest common subsequence.
+pub(super) fn beside(before: &str, after: &str) -> (Vec<Words>, Vec<Words>) {
+    let (a, b): (Vec<&str>, Vec<&str>) = (before.split_whitespace().collect(), after.split_whitespace().collect());
+    let mut longest = vec![vec![0_usize; b.len() + 1]; a.len() + 1];
+    for at in (0..a.len()).rev() {
+        for to in (0..b.len()).rev() {
+            longest[at][to] = match a[at] == b[to] {
+                true => longest[at + 1][to + 1] + 1,
+                false => longest[at + 1][to].max(longest[at][to + 1]),
+            };
+        }
+    }
+    let (mut in_a, mut in_b) = (vec![false; a.len()], vec![false; b.len()]);
+    let (mut at, mut to) = (0, 0);
+    while at < a.len() && to < b.len() {
+        if a[at] == b[to] {
+            (in_a[at], in_b[to]) = (true, true);
+            (at, to) = (at + 1, to + 1);
+        } else if longest[at + 1][to] >= longest[at][to + 1] {
+            at += 1;
+        } else {
+            to += 1;
+        }
+    }
+    (grouped(&a, &in_a), grouped(&b, &in_b))
+}
+
+fn grouped(words: &[&str], is_common: &[bool]) -> Vec<Words> {
+    let mut groups: Vec<Words> = Vec::new();
+    for (word, is_common) in words.iter().zip(is_common) {
+        match groups.last_mut().filter(|group| group.differs != *is_common) {
+            Some(group) => {
+                group.words.push(' ');
+                group.words.push_str(word);
+            }
+            None => groups.push(Words { words: (*word).to_owned(), differs: !is_common }),
+        }
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beside_marks_differing_words_in_both_texts() {
+        let (before, after) = beside("Turn left at the sofa and stop.", "Turn right at the sofa and stop.");
+        let words = |words: &str, differs| Words { words: words.to_owned(), differs };
+        assert_eq!(before, [words("Turn", false), words("left", true), words("at the sofa and stop.", false)]);
+        assert_eq!(after[1], words("right", true));
+        assert_eq!(beside("a b", "a b").0, [words("a b", false)]);
+        assert_eq!(beside("", "a"), (vec![], vec![words("a", true)]));
+    }
+}

@@ -1,0 +1,455 @@
+//! The page of a small made-up run.
+
+use super::*;
+use std::collections::{BTreeMap, BTreeSet};
+use wayword_core::{
+    Caption, Check, DVec3, Exchange, Finding, Gaze, Heading, Instruction, Look, Mention, MentionKind, Motion,
+    Observation, Path as WalkPath, Provenance, SceneId, Sighting, Target, Verdict, Where, Witness, path::Stop,
+};
+use wayword_formats::jsonl::Record;
+use wayword_run::{
+    run_folder::{Map, Rejected, WalkRecord, file},
+    settings::Asked,
+};
+
+const SCRIPT: &str = "<script>alert('x')</script>";
+
+fn path(id: &str) -> WalkPath {
+    let stop = |x: f64, y: f64| Stop { position: DVec3::new(x, y, 1.5), viewpoint: None, level: Some(1) };
+    let target = Target {
+        object: wayword_core::ObjectId::new("7").unwrap(),
+        name: "lamp".into(),
+        told_by: vec![],
+        has_namesake: true,
+        descriptions: Vec::new(),
+        hangs: false,
+        storeys: 0,
+    };
+    WalkPath {
+        id: id.into(),
+        scene: SceneId::new("made-up").unwrap(),
+        frames: WalkPath::frames_along(vec![stop(0.0, 0.0), stop(0.0, 3.0), stop(2.0, 3.0)], None),
+        motion: Motion::Known,
+        target: Some(target),
+    }
+}
+
+fn observation(room: &str, thing: &str) -> Observation {
+    let sighting =
+        |name: &str, witness| Sighting { place: Some(Where::Left), ..Sighting::new(name, witness, "labels") };
+    let text = format!("A {room} with a {thing} on the left.");
+    let caption = Caption {
+        text: text.clone(),
+        room: Some(room.into()),
+        sightings: vec![sighting(thing, Witness::Seen), sighting("piano", Witness::Denied)],
+        transcript: vec![Exchange::new("Is there a piano?", "No.")],
+        ..Caption::default()
+    };
+    Observation { looks: vec![Look { gaze: Gaze::quarter(Heading::NORTH), caption }], summary: text, by: None }
+}
+
+fn walk(id: &str) -> WalkRecord {
+    WalkRecord {
+        platform: "house".into(),
+        path: path(id),
+        observations: vec![
+            observation("hallway", "bench"),
+            observation("hallway", "mirror"),
+            observation("study", "lamp"),
+        ],
+        originals: vec!["Go to the study.".into()],
+        map: Map { nodes: vec![[0.0, 0.0], [0.0, 3.0], [2.0, 3.0], [-2.0, 1.0]], edges: vec![[0, 1], [1, 2], [0, 3]] },
+        has_pictures: false,
+    }
+}
+
+fn instruction(text: &str, words: &[(&str, MentionKind, usize)], findings: Vec<Finding>) -> Instruction {
+    let mention = |(word, kind, frame): &(&str, MentionKind, usize)| {
+        let start = text.find(word).unwrap();
+        Mention { span: [start, start + word.len()], kind: *kind, frame: *frame }
+    };
+    Instruction {
+        text: text.into(),
+        style: "r2r".into(),
+        mentions: words.iter().map(mention).collect(),
+        verdict: Verdict::of(&findings),
+        findings,
+        ambiguity: None,
+        provenance: Provenance {
+            wayword: "0.0.0".into(),
+            asker: "rules".into(),
+            answerer: "labels".into(),
+            detector: None,
+            summariser: "rules".into(),
+            writer: "rules".into(),
+            checked_against: "labels".into(),
+            seed: 0,
+            style_hash: "0123456789abcdef".into(),
+            prompts_hash: None,
+            repairs: 1,
+            finished_for: None,
+            chosen: None,
+            target_undescribed: false,
+        },
+    }
+}
+
+fn finding(check: Check, verdict: Verdict, reason: &str) -> Finding {
+    Finding { check, verdict, reason: reason.into(), span: None }
+}
+
+fn good() -> Instruction {
+    let words =
+        [("mirror", MentionKind::Landmark, 1), ("right", MentionKind::Turn, 1), ("lamp", MentionKind::Target, 2)];
+    instruction(
+        "Pass the mirror and turn right. Stop at the lamp.",
+        &words,
+        vec![finding(Check::Turns, Verdict::Pass, "")],
+    )
+}
+
+/// A run folder of two items, and one that failed.
+fn run_of(first: &WalkRecord, instruction: &Instruction) -> tempfile::TempDir {
+    let run = tempfile::tempdir().unwrap();
+    let second = walk("b");
+    let wrong = Finding { span: Some([0, 9]), ..finding(Check::Turns, Verdict::Fail, "the path turns right there") };
+    let last = self::instruction("Turn left. Stop at the lamp.", &[("left", MentionKind::Turn, 1)], vec![wrong]);
+    let rejected = [
+        Rejected {
+            item: "b".into(),
+            style: "r2r".into(),
+            reason: "turns: the path turns right there".into(),
+            last: Some(last),
+            number: 0,
+        },
+        Rejected { item: "c".into(), style: String::new(), reason: "no such viewpoint".into(), last: None, number: 0 },
+    ];
+    let config = toml::to_string(&Asked::default().resolve().unwrap()).unwrap();
+    fs::write(run.path().join(file::CONFIG), config).unwrap();
+    let mut walks = line(first);
+    walks.push_str(&line(&second));
+    fs::write(run.path().join(file::WALKS), walks).unwrap();
+    let record = Record::new("house", first.path.clone(), instruction.clone());
+    fs::write(run.path().join(file::INSTRUCTIONS), line(&record)).unwrap();
+    fs::write(run.path().join(file::REJECTED), rejected.iter().map(line).collect::<String>()).unwrap();
+    run
+}
+
+fn line(value: &impl Serialize) -> String {
+    format!("{}\n", serde_json::to_string(value).unwrap())
+}
+
+fn page_of(run: &Path, most_items: usize) -> (String, Written) {
+    let out = run.join(file::REPORT);
+    let written = write(run, &out, most_items).unwrap();
+    (fs::read_to_string(out).unwrap(), written)
+}
+
+fn add_picture(run: &Path) {
+    fs::create_dir(run.join(file::FRAMES)).unwrap();
+    image::RgbImage::new(8, 6).save(run.join("frames/a_1.jpg")).unwrap();
+}
+
+/// The values of an attribute.
+fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
+    let opening = format!(" {attribute}=\"");
+    page.split(opening.as_str()).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[test]
+fn the_page_of_a_small_run_is_as_before() {
+    let run = run_of(&walk("a"), &good());
+    let (page, _) = page_of(run.path(), 100);
+    // Without the style sheet.
+    let (head, rest) = page.split_once("<style>").unwrap();
+    let (_, body) = rest.split_once("</style>").unwrap();
+    insta::assert_snapshot!(format!("{head}{body}"));
+}
+
+#[test]
+fn a_walk_without_poses_shows_no_map_no_length_and_no_moves() {
+    let mut video = walk("a");
+    video.path.motion = Motion::Unknown;
+    let run = run_of(&video, &good());
+    let (page, _) = page_of(run.path(), 100);
+    let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
+    assert!(page.contains("The recording has no poses, so its turns and distances are not known."));
+    for told in [" m ·", " m</p>", "5.0 m", "0.0 m", "<svg viewBox", "storey 1", "class=\"then\"><svg", "as a map"] {
+        assert!(!page.contains(told), "{told}: {page}");
+    }
+    assert_eq!((page.matches("class=\"frame\"").count(), page.matches("the path ends here").count()), (3, 1));
+}
+
+#[test]
+fn page_escapes_texts_from_files_and_models() {
+    let mut walk = walk(&format!("a{SCRIPT}"));
+    walk.originals = vec![SCRIPT.into()];
+    walk.observations[0].summary = SCRIPT.into();
+    walk.observations[0].looks[0].caption = Caption {
+        text: SCRIPT.into(),
+        room: Some(SCRIPT.into()),
+        sightings: vec![Sighting { name: SCRIPT.into(), ..walk.observations[0].looks[0].caption.sightings[0].clone() }],
+        transcript: vec![Exchange::new(SCRIPT, "\" onload=\"alert(1)")],
+        ..Caption::default()
+    };
+    walk.path.target.as_mut().unwrap().name = SCRIPT.into();
+    let mut hostile = instruction(
+        SCRIPT,
+        &[("alert", MentionKind::Room, 1)],
+        vec![finding(Check::Form, Verdict::Unverified, SCRIPT)],
+    );
+    hostile.style = SCRIPT.into();
+    hostile.provenance.writer = SCRIPT.into();
+    let run = run_of(&walk, &hostile);
+    let (page, _) = page_of(run.path(), 100);
+    assert!(!page.contains("<script") && !page.contains("\" onload"));
+    assert!(page.matches("&lt;script&gt;").count() > 10);
+    assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+fn page_has_a_target_for_every_link_and_loads_no_files() {
+    let run = run_of(&WalkRecord { has_pictures: true, ..walk("a") }, &good());
+    add_picture(run.path());
+    let (page, _) = page_of(run.path(), 100);
+    let places: BTreeSet<&str> = values(&page, "id").into_iter().collect();
+    assert_eq!(places.len(), values(&page, "id").len(), "two places of one name");
+    let links = values(&page, "href");
+    for link in &links {
+        assert!(link.strip_prefix('#').is_some_and(|place| places.contains(place)), "{link} leads nowhere");
+    }
+    for frame in ["#w1-f1", "#w2-f1", "#w2-f2"] {
+        assert!(links.contains(&frame));
+    }
+    assert!(!page.contains("http:") && !page.contains("https:") && !page.contains("url(") && !page.contains("@import"));
+    let sources = values(&page, "src");
+    assert!(sources.len() == 1 && sources.iter().all(|source| source.starts_with("data:image/jpeg;base64,")));
+}
+
+#[test]
+fn mentions_are_links_to_their_frames() {
+    let run = run_of(&walk("a"), &good());
+    let (page, _) = page_of(run.path(), 100);
+    let link = |kind: &str, frame: &str, word: &str| {
+        let opening = format!("<a class=\"tie {kind}\" href=\"#{frame}\"");
+        page.split(opening.as_str())
+            .skip(1)
+            .any(|rest| rest.split_once("<span class=\"told\">").is_some_and(|(_, rest)| rest.starts_with(word)))
+    };
+    assert!(link("landmark", "w2-f1", "mirror") && link("turn", "w2-f1", "right") && link("target", "w2-f2", "lamp"));
+}
+
+#[test]
+fn pictures_are_within_the_page() {
+    let record = WalkRecord { has_pictures: true, ..walk("a") };
+    let run = run_of(&record, &good());
+    add_picture(run.path());
+    let (page, written) = page_of(run.path(), 100);
+    assert_eq!((written.pictures, written.pictures_left_out), (1, 2));
+    assert_eq!(values(&page, "src").len(), 1);
+}
+
+#[test]
+fn page_shows_only_the_first_items_and_reports_it() {
+    let run = run_of(&walk("a"), &good());
+    let (page, written) = page_of(run.path(), 1);
+    assert_eq!((written.items, written.left_out), (1, 1));
+    assert_eq!(page.matches("<article ").count(), 1);
+    assert!(page.contains("shows 1 of 2 paths") && page.contains("left out: 1 path."), "{page}");
+    let none = page_of(run.path(), 0).1;
+    assert_eq!((none.items, none.left_out), (0, 2));
+}
+
+#[test]
+fn the_same_run_gives_the_same_bytes() {
+    let run = run_of(&walk("a"), &good());
+    assert_eq!(page_of(run.path(), 100), page_of(run.path(), 100));
+}
+
+#[test]
+fn hostile_frames_and_spans_do_no_harm() {
+    let mut wild = walk("a");
+    wild.map.edges.push([usize::MAX, 0]);
+    wild.path.frames[1].pose.position.x = 1e308;
+    wild.observations.truncate(1);
+    let mut bad = good();
+    bad.mentions = vec![
+        Mention { span: [usize::MAX, 0], kind: MentionKind::Room, frame: 0 },
+        Mention { span: [0, 4], kind: MentionKind::Room, frame: usize::MAX },
+    ];
+    let run = run_of(&wild, &bad);
+    let (page, _) = page_of(run.path(), 100);
+    assert!(page.contains("The positions of this path cannot be drawn as a map."));
+    assert!(page.contains("Pass the mirror and turn right. Stop at the lamp."));
+}
+
+#[test]
+fn a_folder_that_is_no_run_is_refused_and_the_old_page_stays() {
+    let run = run_of(&walk("a"), &good());
+    let before = page_of(run.path(), 100);
+    fs::write(run.path().join(file::WALKS), "nonsense\n").unwrap();
+    let out = run.path().join(file::REPORT);
+    assert!(write(run.path(), &out, 100).unwrap_err().to_string().contains("walks.jsonl: line 1"));
+    assert_eq!(fs::read_to_string(&out).unwrap(), before.0);
+    assert!(write(&run.path().join("nothing"), &out, 100).is_err());
+}
+
+/// A run of `items` items that pass, but those with these numbers are rejected or unverified.
+fn long_run(items: usize, rejected: &[usize], unverified: &[usize]) -> tempfile::TempDir {
+    let run = run_of(&walk("a"), &good());
+    let ids: Vec<String> = (0..items).map(|number| format!("item-{number}")).collect();
+    let (mut walks, mut accepted, mut refused) = (String::new(), String::new(), String::new());
+    for (number, id) in ids.iter().enumerate() {
+        let mut walk = walk(id);
+        walk.path.scene = SceneId::new(format!("scene-{}", number % 3)).unwrap();
+        walks.push_str(&line(&walk));
+        let mut text = good();
+        text.text = format!("{} It is number {number}.", text.text);
+        if rejected.contains(&number) {
+            let reason = "turns: the path turns right there".to_owned();
+            refused.push_str(&line(&Rejected {
+                item: id.clone(),
+                style: "r2r".into(),
+                reason,
+                last: Some(text),
+                number: 0,
+            }));
+            continue;
+        }
+        if unverified.contains(&number) {
+            text.verdict = Verdict::Unverified;
+        }
+        accepted.push_str(&line(&Record::new("house", walk.path, text)));
+    }
+    fs::write(run.path().join(file::WALKS), walks).unwrap();
+    fs::write(run.path().join(file::INSTRUCTIONS), accepted).unwrap();
+    fs::write(run.path().join(file::REJECTED), refused).unwrap();
+    run
+}
+
+/// The pages of a report by their names, and the overview's name.
+fn pages_of(run: &Path, most_items: usize, per_page: usize) -> (BTreeMap<String, String>, Written) {
+    let written = write_paged(run, &run.join(file::REPORT), most_items, per_page).unwrap();
+    let name = |page: &String| Path::new(page).file_name().unwrap().to_str().unwrap().to_owned();
+    let all = std::iter::once(&written.page).chain(&written.pages);
+    (all.map(|page| (name(page), fs::read_to_string(page).unwrap())).collect(), written)
+}
+
+/// The text after each opening, up to the end of the line.
+fn after<'a>(page: &'a str, opening: &str) -> Vec<&'a str> {
+    page.split(opening).skip(1).filter_map(|rest| rest.lines().next()).collect()
+}
+
+#[test]
+fn rejected_and_unverified_texts_come_first_however_late_they_are_in_the_run() {
+    let run = long_run(30, &[28], &[17, 29]);
+    let (page, written) = page_of(run.path(), 5);
+    assert_eq!((written.items, written.left_out), (5, 25));
+    let titles: Vec<&str> = page.split("<article ").skip(1).map(|item| after(item, "</a> <bdi>")[0]).collect();
+    let expected = ["item-28", "item-17", "item-29", "item-0", "item-1"].map(|id| format!("{id}</bdi></h2>"));
+    assert_eq!(titles, expected);
+}
+
+#[test]
+fn the_list_shows_text_scene_and_verdict_of_every_item_and_can_be_filtered() {
+    let run = long_run(6, &[4], &[3]);
+    let (page, _) = page_of(run.path(), 100);
+    let rows: Vec<&str> = page.split("<li class=\"row ").skip(1).collect();
+    let states: Vec<&str> = rows.iter().map(|row| row.split([' ', '"']).next().unwrap()).collect();
+    assert_eq!(states, ["rejected", "unverified", "passed", "passed", "passed", "passed"]);
+    for (row, told) in rows.iter().zip([
+        ["✗ rejected", "href=\"#w1\"", "scene-1</bdi>", "number 4.", "turns: the path turns right there"],
+        ["? unverified", "href=\"#w2\"", "scene-0</bdi>", "number 3.", "r2r"],
+        ["✓ passed", "href=\"#w3\"", "scene-0</bdi>", "number 0.", "r2r"],
+    ]) {
+        assert!(told.iter().all(|told| row.contains(told)), "{row}");
+    }
+    // Without a script: the choice hides the rows of another kind.
+    for filter in ["id=\"state-rejected\"", "id=\"scene-2\"", ":root:has(#scene-2:checked) .row:not(.scene-2)"] {
+        assert!(page.contains(filter), "{filter}");
+    }
+    assert!(!page.contains("<script") && !page.contains("id=\"style-0\""), "one style is no choice");
+}
+
+#[test]
+fn list_shows_failed_items_with_their_reasons() {
+    let run = long_run(2, &[], &[]);
+    let lines = [
+        "{\"item\":\"old\",\"style\":\"\",\"reason\":\"the model gave nothing\"}\n",
+        "{\"item\":\"new\",\"failure\":\"lost\",\"reason\":\"the simulator died\",\"more\":1}\n",
+    ];
+    fs::write(run.path().join(file::ERRORS), lines.concat()).unwrap();
+    let (page, _) = page_of(run.path(), 100);
+    let rows: Vec<&str> = page.split("<li class=\"row ").skip(1).collect();
+    assert_eq!(rows.len(), 4);
+    assert!(rows[0].starts_with("failed") && rows[0].contains("the model gave nothing"), "{}", rows[0]);
+    assert!(rows[1].contains("new") && rows[1].contains("lost: the simulator died"), "{}", rows[1]);
+    assert!(page.contains("2 items failed"));
+}
+
+#[test]
+fn many_walks_are_split_into_pages_whose_links_all_lead_somewhere() {
+    let run = long_run(7, &[6], &[]);
+    let (pages, written) = pages_of(run.path(), 100, 3);
+    assert_eq!(pages.keys().collect::<Vec<_>>(), ["report-1.html", "report-2.html", "report-3.html", "report.html"]);
+    assert_eq!((written.items, written.pages.len()), (7, 3));
+    let walks = |name: &str| pages[name].matches("<article ").count();
+    assert_eq!(["report.html", "report-1.html", "report-2.html", "report-3.html"].map(walks), [0, 3, 3, 1]);
+    assert!(pages["report-1.html"].contains("item-6"), "the rejected one is on the first page");
+    assert!(pages["report.html"].contains("href=\"report-3.html#w7\""));
+    for (name, page) in &pages {
+        for link in values(page, "href") {
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            let target = &pages[if file.is_empty() { name } else { file }];
+            assert!(place.is_empty() || values(target, "id").contains(&place), "{name}: {link} leads nowhere");
+        }
+        let places = values(page, "id");
+        assert_eq!(places.iter().collect::<BTreeSet<_>>().len(), places.len(), "{name}: two places of one name");
+    }
+    // A shorter report removes the longer one's pages, and leaves no temporary files.
+    let (pages, _) = pages_of(run.path(), 2, 3);
+    assert_eq!(pages.len(), 1);
+    let left = fs::read_dir(run.path()).unwrap().filter_map(|entry| entry.unwrap().file_name().into_string().ok());
+    let left: Vec<String> = left.filter(|name| name.contains("report")).collect();
+    assert_eq!(left, ["report.html"]);
+}
+
+#[test]
+fn pages_of_another_run_are_neither_replaced_nor_removed() {
+    let (one, other) = (long_run(7, &[], &[]), long_run(7, &[], &[]));
+    let out = one.path().join("page.html");
+    let first = one.path().join("page-1.html");
+    write_paged(one.path(), &out, 100, 3).unwrap();
+    let before = [&out, &first].map(|file| fs::read(file).unwrap());
+    let refused = write_paged(other.path(), &out, 100, 3).unwrap_err().to_string();
+    assert!(refused.contains("page-1.html") && refused.contains("--out"), "{refused}");
+    assert_eq!([&out, &first].map(|file| fs::read(file).unwrap()), before);
+    // A report of one page needs no numbered pages, and removes none.
+    write_paged(other.path(), &out, 2, 3).unwrap();
+    assert_eq!(fs::read(&first).unwrap(), before[1]);
+    // Pages of the same run are replaced.
+    write_paged(one.path(), &out, 100, 3).unwrap();
+}
+
+#[test]
+fn frames_are_counted_from_0_as_on_the_terminal() {
+    let run = run_of(&walk("a"), &good());
+    let (page, _) = page_of(run.path(), 100);
+    let (_, page) = page.split_once("<article id=\"w2\"").unwrap();
+    assert_eq!(after(page, "<li class=\"frame\" id=\"").len(), 3);
+    for told in ["id=\"w2-f0\"", "<span class=\"badge\">0</span>", "aria-label=\"Frame 0\"", "from frame 0 to frame 2"]
+    {
+        assert!(page.contains(told), "{told}");
+    }
+    assert!(!page.contains("w2-f3") && page.contains("title=\"landmark, frame 1\""));
+}
+
+#[test]
+fn print_is_bounded() {
+    let run = long_run(120, &[], &[]);
+    let (pages, _) = pages_of(run.path(), 1000, 50);
+    let overview = &pages["report.html"];
+    assert!(overview.contains(".row:nth-child(n + 101) { display: none; }"));
+    assert!(overview.contains("The first 100 of 120 texts are printed."));
+    assert!(pages.iter().all(|(_, page)| page.matches("<article ").count() <= 50));
+}

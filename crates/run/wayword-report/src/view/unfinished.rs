@@ -1,0 +1,65 @@
+//! Writes a file under a temporary name, and moves it to its place once it is complete. An interrupted command leaves the old file.
+
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+use wayword_run::error::Error;
+
+/// A file under a temporary name in the folder of its place. If dropped before it is finished, it is removed, and the old file stays.
+pub struct Unfinished {
+    file: BufWriter<File>,
+    beside: PathBuf,
+    out: PathBuf,
+}
+
+impl Unfinished {
+    /// Begins a file.
+    ///
+    /// # Errors
+    /// When it cannot be made.
+    pub(super) fn new(out: &Path) -> Result<Self, Error> {
+        let mut name = std::ffi::OsString::from(".");
+        name.push(out.file_name().unwrap_or_default());
+        name.push(format!(".{}.part", std::process::id()));
+        let beside = out.with_file_name(name);
+        let file = File::create(&beside).map_err(Error::io(out, "write"))?;
+        Ok(Self { file: BufWriter::new(file), beside, out: out.to_owned() })
+    }
+
+    /// Writes a complete file with these bytes.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn whole(out: &Path, bytes: &[u8]) -> Result<(), Error> {
+        let mut file = Self::new(out)?;
+        file.write_all(bytes).map_err(Error::io(out, "write"))?;
+        file.finish()
+    }
+
+    /// Moves it to its place.
+    ///
+    /// # Errors
+    /// When it cannot be written or moved.
+    pub(super) fn finish(mut self) -> Result<(), Error> {
+        self.file.flush().and_then(|()| fs::rename(&self.beside, &self.out)).map_err(Error::io(&self.out, "write"))
+    }
+}
+
+impl Write for Unfinished {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        // A finished file is no longer here. A file that cannot be removed stays.
+        let _ = fs::remove_file(&self.beside);
+    }
+}

@@ -1,0 +1,73 @@
+//! Turns flags and the settings file into the configuration for calls to models: providers, prices, rates, and the file of the
+//! ledger.
+
+use crate::{
+    error::Error,
+    settings::{Job, Service},
+    text_file,
+};
+use etcetera::BaseStrategy;
+use std::path::PathBuf;
+use wayword_remote::{Concurrency, Config, Prices, ProviderConfig};
+
+/// Most requests at a time for each provider, unless the user gives a number: the limit of the search for the right
+/// one.
+const MOST_AT_A_TIME: usize = 64;
+
+/// The ledger that flags or file name, else the one in the user's data folder. There is one for all runs, so that a run does not
+/// pay again for a call of an earlier run.
+///
+/// # Errors
+/// When the user has no home folder.
+pub fn ledger_path(service: &Service) -> Result<PathBuf, Error> {
+    if let Some(path) = &service.ledger {
+        return Ok(path.clone());
+    }
+    let strategy = etcetera::choose_base_strategy().map_err(|_| {
+        Error::usage("there is no home folder to keep the ledger in", "name a file, as in --ledger calls.db")
+    })?;
+    Ok(strategy.data_dir().join("wayword").join("ledger.db"))
+}
+
+/// The configuration for models over HTTP.
+///
+/// # Errors
+/// When a provider's table or the list of prices cannot be read.
+pub(super) fn config(Job { settings, service, providers, .. }: &Job) -> Result<Config, Error> {
+    let provider = |(name, table): (&String, &toml::Table)| -> Result<(String, ProviderConfig), Error> {
+        let config = table.clone().try_into().map_err(|error: toml::de::Error| {
+            Error::usage(format!("[providers.{name}]: {}", error.message()), "see docs/MODELS.md for the names")
+        })?;
+        Ok((name.clone(), config))
+    };
+    let default = Config::default();
+    Ok(Config {
+        providers: providers.iter().map(provider).collect::<Result<_, _>>()?,
+        base_url: settings.roles.base_url.clone(),
+        key_env: service.key_env.clone(),
+        picture_px: settings.roles.picture_px,
+        concurrency: concurrency(service),
+        timeout_s: service.timeout_s.unwrap_or(default.timeout_s),
+        requests_per_minute: service.requests_per_minute,
+        tokens_per_minute: service.tokens_per_minute,
+        prices: prices(service)?,
+        needs_prices: service.max_usd.is_some(),
+        ..default
+    })
+}
+
+/// Requests at a time for each provider.
+pub(super) fn concurrency(service: &Service) -> Concurrency {
+    service.concurrency.map_or(Concurrency::Adaptive { most: MOST_AT_A_TIME }, Concurrency::Fixed)
+}
+
+fn prices(service: &Service) -> Result<Prices, Error> {
+    match &service.prices {
+        None => Ok(Prices::built_in()),
+        Some(file) => Prices::read(&text_file::read(file, "read the prices")?).map_err(|error| {
+            let error = error.to_string();
+            let (problem, hint) = error.split_once("\nhint: ").unwrap_or((&error, "the format is in docs/MODELS.md"));
+            Error::usage(format!("{}: {}", file.display(), problem.trim_end()), hint)
+        }),
+    }
+}

@@ -1,0 +1,233 @@
+//! The report of `wayword check`: counts by verdict and check, and the texts that did not pass.
+
+use super::walks::Text;
+use crate::{count::count, doubts::Doubted, follow::Shares};
+use serde::Serialize;
+use std::{collections::BTreeMap, fmt};
+use wayword_checks::Checked;
+use wayword_core::{Ambiguity, Check, Doubt, Finding, Grade, Verdict};
+
+/// The result of checking a file.
+#[derive(Debug, Default, Serialize)]
+pub struct CheckReport {
+    /// Texts that passed every check.
+    pub passed: usize,
+    /// Texts without a mistake of which a part could not be checked.
+    pub unverified: usize,
+    /// Texts that failed a check.
+    pub failed: usize,
+    /// The sources of evidence that texts were checked against.
+    pub checked_against: Vec<String>,
+    /// The number of texts that were checked in an open and in a closed world.
+    pub worlds: BTreeMap<&'static str, usize>,
+    /// The file of `--calibration`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
+    /// The styles that texts were checked against, with the number of texts; empty for a dataset without `--style`.
+    pub styles: BTreeMap<String, usize>,
+    /// Styles that texts name, but that differ from the built-in style of that name. These texts were not checked against a
+    /// style.
+    pub unknown_styles: BTreeMap<String, usize>,
+    /// Per check, the texts that passed, were unverified, or failed it.
+    pub by_check: BTreeMap<&'static str, Counts>,
+    /// Texts that may mean several places, or several objects at the end of the path. They fail for that only where
+    /// `--reject-ambiguous` asks for it.
+    pub ambiguous: usize,
+    /// Each of them, whether it passed or not.
+    pub ambiguous_texts: Vec<AmbiguousText>,
+    /// Every text that did not pass, with its findings.
+    pub not_passed: Vec<CheckedText>,
+    /// With `--doubts`: every text with the words that a reader should doubt, in the order of the file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub doubted: Vec<DoubtedText>,
+}
+
+/// Texts by verdict.
+#[derive(Debug, Default, Clone, Copy, Serialize)]
+pub struct Counts {
+    /// Passed.
+    pub passed: usize,
+    /// There was no evidence to check against.
+    pub unverified: usize,
+    /// Failed.
+    pub failed: usize,
+}
+
+/// A text that may mean more than its path.
+#[derive(Debug, Clone, Serialize)]
+pub struct AmbiguousText {
+    /// Its path.
+    pub path: String,
+    /// Its words.
+    pub text: String,
+    /// The places and objects that it may mean.
+    pub ambiguity: Ambiguity,
+}
+
+/// A text with its findings.
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckedText {
+    /// Its path.
+    pub path: String,
+    /// Its words.
+    pub text: String,
+    /// All checks together.
+    pub verdict: Verdict,
+    /// The world in which it was checked: open or closed.
+    pub world: &'static str,
+    /// The findings that are not passes.
+    pub findings: Vec<Finding>,
+    /// How likely it is that the text means its path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub route: Option<Shares>,
+    /// How much the text would fit better with its most doubtful turn reversed: a difference of natural logs of likelihood.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_gain: Option<f64>,
+    /// The places and objects that the text may mean. Ambiguity makes a text fail only where `--reject-ambiguous` asks for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambiguity: Option<Ambiguity>,
+    /// The words that a reader should doubt, where that was asked for. A report lists them in [`CheckReport::doubted`].
+    #[serde(skip)]
+    pub doubted: Option<Doubted>,
+    /// The style that it was written in, if the file names it.
+    #[serde(skip)]
+    pub style: Option<String>,
+}
+
+/// A text with the words that a reader should doubt.
+#[derive(Debug, Clone, Serialize)]
+pub struct DoubtedText {
+    /// Its path.
+    pub path: String,
+    /// The style that it was written in, if the file names it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<String>,
+    /// Its words.
+    pub text: String,
+    /// All checks together.
+    pub verdict: Verdict,
+    /// The world in which it was checked: open or closed.
+    pub world: &'static str,
+    /// Why it could not be followed, where it could not: then no other wording is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unfollowed: Option<&'static str>,
+    /// The doubts, in the order of the text and apart from each other.
+    pub doubts: Vec<Doubt>,
+}
+
+impl DoubtedText {
+    fn of(text: &CheckedText, Doubted { doubts, unfollowed }: Doubted) -> Self {
+        let (path, style, words) = (text.path.clone(), text.style.clone(), text.text.clone());
+        Self { path, style, text: words, verdict: text.verdict, world: text.world, unfollowed, doubts }
+    }
+
+    /// Whether it has a doubt of this grade.
+    #[must_use]
+    pub fn has(&self, grade: Grade) -> bool {
+        self.doubts.iter().any(|doubt| doubt.grade == grade)
+    }
+}
+
+impl CheckedText {
+    pub(super) fn of(text: &Text, checked: &Checked) -> Self {
+        let findings = checked.findings.iter().filter(|finding| finding.verdict != Verdict::Pass).cloned().collect();
+        let (path, words) = (text.path.clone(), text.words.clone());
+        let (verdict, world) = (checked.verdict(), checked.world.name());
+        let style = text.style.as_ref().map(|style| style.name.clone());
+        let (route, turn_gain, ambiguity, doubted) = (None, None, None, None);
+        Self { path, text: words, verdict, world, findings, route, turn_gain, ambiguity, doubted, style }
+    }
+}
+
+impl CheckReport {
+    pub(super) fn add(&mut self, mut text: CheckedText, findings: &[Finding]) {
+        if let Some(doubted) = text.doubted.take() {
+            self.doubted.push(DoubtedText::of(&text, doubted));
+        }
+        for check in Check::ALL {
+            let of_check: Vec<Finding> = findings.iter().filter(|finding| finding.check == check).cloned().collect();
+            if !of_check.is_empty() {
+                self.by_check.entry(check.name()).or_default().count(Verdict::of(&of_check));
+            }
+        }
+        *self.worlds.entry(text.world).or_default() += 1;
+        if let Some(ambiguity) = text.ambiguity.as_ref().filter(|ambiguity| ambiguity.is_ambiguous()) {
+            let (path, words) = (text.path.clone(), text.text.clone());
+            self.ambiguous += 1;
+            self.ambiguous_texts.push(AmbiguousText { path, text: words, ambiguity: ambiguity.clone() });
+        }
+        match text.verdict {
+            Verdict::Pass => self.passed += 1,
+            Verdict::Unverified => self.unverified += 1,
+            Verdict::Fail => self.failed += 1,
+        }
+        if text.verdict != Verdict::Pass {
+            self.not_passed.push(text);
+        }
+    }
+}
+
+impl Counts {
+    fn count(&mut self, verdict: Verdict) {
+        match verdict {
+            Verdict::Pass => self.passed += 1,
+            Verdict::Unverified => self.unverified += 1,
+            Verdict::Fail => self.failed += 1,
+        }
+    }
+}
+
+/// The report as people read it.
+pub(super) struct Shown<'a> {
+    pub(super) report: &'a CheckReport,
+    /// The most texts to show of those that did not pass.
+    pub(super) most: usize,
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { report, most } = self;
+        for text in report.not_passed.iter().take(*most) {
+            writeln!(f, "{} {:?}: {}", text.path, text.verdict, text.text)?;
+            for finding in &text.findings {
+                let words = finding.span.and_then(|[from, to]| text.text.get(from..to));
+                let words = words.map_or(String::new(), |words| format!(" \"{words}\""));
+                writeln!(f, "    {} ({:?}){words}: {}", finding.check.name(), finding.verdict, finding.reason)?;
+            }
+        }
+        writeln!(f, "{:<10} {:>7} {:>11} {:>7}", "check", "passed", "unverified", "failed")?;
+        let all = Counts { passed: report.passed, unverified: report.unverified, failed: report.failed };
+        for (name, counts) in report.by_check.iter().chain(std::iter::once((&"all", &all))) {
+            writeln!(f, "{name:<10} {:>7} {:>11} {:>7}", counts.passed, counts.unverified, counts.failed)?;
+        }
+        let worlds = report.worlds.iter().map(|(name, texts)| format!("{name} ({texts})"));
+        let worlds = worlds.collect::<Vec<_>>().join(", ");
+        write!(f, "checked against: {}\nworld: {worlds}", report.checked_against.join(", "))?;
+        if report.ambiguous > 0 {
+            write!(f, "\nambiguous: {} may mean several places or objects", count(report.ambiguous, "text"))?;
+        }
+        if !report.doubted.is_empty() {
+            let with = |grade: Grade| {
+                let texts = report.doubted.iter().filter(|text| text.has(grade)).count();
+                format!("{} with words that are {}", count(texts, "text"), grade.told())
+            };
+            write!(f, "\ndoubts: {}", Grade::ALL.map(with).join(", "))?;
+        }
+        if let Some(file) = &report.calibration {
+            write!(f, "\ncalibration: {file}")?;
+        }
+        if !report.styles.is_empty() {
+            let styles = report.styles.iter().map(|(name, texts)| format!("{name} ({texts})"));
+            write!(f, "\nstyles: {}", styles.collect::<Vec<_>>().join(", "))?;
+        }
+        for (name, texts) in &report.unknown_styles {
+            write!(
+                f,
+                "\nstyle {name} in this file differs from the built-in one (it is your own, or of another version), so \
+                 the form of {} was not checked: name the style with --style",
+                count(*texts, "text")
+            )?;
+        }
+        Ok(())
+    }
+}

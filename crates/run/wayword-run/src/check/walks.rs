@@ -1,0 +1,160 @@
+//! The texts of a file, gathered by the path that they are about.
+
+use crate::error::Error;
+use std::{collections::BTreeMap, path::Path as FilePath};
+use wayword_core::{Path, Platform, Provenance, SceneId, ViewpointId};
+use wayword_formats::{
+    Format,
+    jsonl::{self, Record},
+};
+use wayword_world::path_of;
+
+/// A path with every text about it, so that the views along the path are looked up once for all of them.
+pub(super) struct Walk {
+    pub(super) path: Path,
+    pub(super) texts: Vec<Text>,
+}
+
+/// A text of the file.
+pub(super) struct Text {
+    /// Its place in the file.
+    pub(super) at: usize,
+    /// The name of its path.
+    pub(super) path: String,
+    pub words: String,
+    /// The style that it was written in, if the file names it.
+    pub(super) style: Option<Named>,
+    /// The tag of its language, where the file gives one.
+    pub(super) tag: Option<String>,
+    /// Its platform and provenance, if the file has them.
+    pub(super) made: Option<(String, Provenance)>,
+}
+
+impl Text {
+    /// A text of a dataset, which has no provenance.
+    fn of_dataset(path: &Path, words: String, tag: Option<String>) -> Self {
+        Self { at: 0, path: path.id.clone(), words, style: None, tag, made: None }
+    }
+}
+
+/// A style, as a record names it.
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) hash: String,
+}
+
+/// The paths of a file with their texts, in the order of the file.
+pub(super) fn walks(file: &FilePath, platform: &dyn Platform) -> Result<Vec<Walk>, Error> {
+    let mut walks = Walks::default();
+    if wayword_formats::detect(file)? == Format::Wayword {
+        for Record { path, instruction, platform: made_on, .. } in jsonl::read(file)? {
+            let path = on_graph(platform, path)?;
+            let text = Text {
+                at: 0,
+                path: path.id.clone(),
+                words: instruction.text,
+                tag: None,
+                style: Some(Named { name: instruction.style, hash: instruction.provenance.style_hash.clone() }),
+                made: Some((made_on, instruction.provenance)),
+            };
+            walks.add(path, text);
+        }
+        return Ok(walks.all);
+    }
+    for episode in wayword_formats::read(file)? {
+        // The check ends with an error at the first missing scene.
+        let path = path_of(
+            platform,
+            &episode.id,
+            &episode.scene,
+            &episode.viewpoints,
+            episode.start_heading,
+            episode.target_object.as_ref(),
+        )?;
+        for (at, words) in episode.instructions.iter().enumerate() {
+            let tag = episode.language(at).map(str::to_owned);
+            walks.add(path.clone(), Text::of_dataset(&path, words.clone(), tag));
+        }
+    }
+    Ok(walks.all)
+}
+
+/// Texts about paths, gathered by their paths.
+#[cfg(feature = "study")]
+pub(super) fn gathered(texts: Vec<(Path, String)>) -> Vec<Walk> {
+    let mut walks = Walks::default();
+    for (path, words) in texts {
+        let text = Text::of_dataset(&path, words, None);
+        walks.add(path, text);
+    }
+    walks.all
+}
+
+/// Paths, gathered from texts.
+#[derive(Default)]
+struct Walks {
+    all: Vec<Walk>,
+    places: BTreeMap<Key, usize>,
+    texts: usize,
+}
+
+/// Everything that evidence depends on: the scene, whether the motion is known, and each frame's place, heading and storey.
+type Key = (SceneId, bool, Vec<(([u64; 3], Option<ViewpointId>), u64, Option<u32>)>);
+
+impl Walks {
+    fn add(&mut self, path: Path, text: Text) {
+        let frames = path.frames.iter().map(|frame| (frame.place(), frame.pose.heading.rad().to_bits(), frame.level));
+        let key = (path.scene.clone(), path.motion.is_known(), frames.collect());
+        let text = Text { at: self.texts, ..text };
+        self.texts += 1;
+        let place = *self.places.entry(key).or_insert(self.all.len());
+        match self.all.get_mut(place) {
+            Some(walk) => walk.texts.push(text),
+            None => self.all.push(Walk { path, texts: vec![text] }),
+        }
+    }
+}
+
+/// A record's path, with the platform's own poses and storeys if its frames are viewpoints. Those in the file are not trusted.
+fn on_graph(platform: &dyn Platform, path: Path) -> Result<Path, Error> {
+    let viewpoints: Option<Vec<_>> = path.frames.iter().map(|frame| frame.viewpoint.clone()).collect();
+    let Some(viewpoints) = viewpoints else { return Ok(path) };
+    // Names of pictures are not viewpoints. Whether the scene has viewpoints is decided by the platform, and not by the file.
+    if !path.motion.is_known() && platform.graph(&path.scene)?.is_empty() {
+        return Ok(path);
+    }
+    let heading = path.frames.first().map(|frame| frame.pose.heading);
+    let object = path.target.as_ref().map(|target| &target.object);
+    Ok(path_of(platform, &path.id, &path.scene, &viewpoints, heading, object)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wayword_core::{DVec3, Motion, path::Stop};
+
+    fn path(id: &str, end_m: f64) -> Path {
+        let stop = |y: f64| Stop { position: DVec3::new(0.0, y, 1.5), viewpoint: None, level: None };
+        let frames = Path::frames_along(vec![stop(0.0), stop(end_m)], None);
+        Path { id: id.into(), scene: SceneId::new("s").unwrap(), frames, motion: Motion::Known, target: None }
+    }
+
+    #[test]
+    fn texts_about_one_way_are_one_walk_whatever_their_items_are_called() {
+        let mut walks = Walks::default();
+        for (id, end_m) in [("1_7", 2.0), ("2", 4.0), ("1_7", 2.0), ("1_9", 2.0)] {
+            let path = path(id, end_m);
+            walks.add(path.clone(), Text::of_dataset(&path, "Stop.".into(), None));
+        }
+        let texts: Vec<Vec<(usize, &str)>> = walks
+            .all
+            .iter()
+            .map(|walk| walk.texts.iter().map(|text| (text.at, text.path.as_str())).collect())
+            .collect();
+        assert_eq!(texts, [vec![(0, "1_7"), (2, "1_7"), (3, "1_9")], vec![(1, "2")]]);
+        let mut other = path("1_7", 2.0);
+        other.motion = Motion::Unknown;
+        walks.add(other.clone(), Text::of_dataset(&other, "Stop.".into(), None));
+        assert_eq!(walks.all.len(), 3, "texts are checked against the motion too");
+    }
+}

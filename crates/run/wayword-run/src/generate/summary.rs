@@ -1,0 +1,274 @@
+//! The summary of a run.
+
+use super::progress::Stop;
+use crate::{
+    calls::Spent,
+    count::count,
+    error::{Error, Exit},
+    looking_for::Lookout,
+    output::tame,
+    run_folder::{FailedItem, Rejected, RunFolder, file, lines},
+};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::{collections::BTreeMap, fmt, path::Path};
+use wayword_core::{Ambiguity, Form, Lack, Observation, Provenance, Verdict};
+
+/// The summary of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The run folder.
+    pub run: String,
+    /// Items of the run.
+    pub items: usize,
+    /// Instructions that passed every check.
+    pub passed: usize,
+    /// Instructions for which something could not be checked.
+    pub unverified: usize,
+    /// Those of the instructions that rules wrote, because every text of the model failed.
+    pub finished_by_rules: usize,
+    /// Instructions that may mean several places, or several objects. They are rejected only with --reject-ambiguous.
+    pub ambiguous: usize,
+    /// Instructions that could not be followed.
+    pub unfollowed: usize,
+    /// The reason of the first of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_unfollowed: Option<String>,
+    /// Views where the model's first answer did not have the requested form, and the second did.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub asked_again: usize,
+    /// Views where no answer had that form, so that the last one was read as plain words.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub read_as_words: usize,
+    /// Instructions, or whole items, that were rejected.
+    pub rejected: usize,
+    /// Items that failed: something is missing or broken, or the platform or a service was lost. The same command tries
+    /// them again.
+    pub errors: usize,
+    /// The first failed item with its reason, else the first rejected text.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_loss: Option<String>,
+    /// Who asked, answered, summarised and wrote.
+    pub roles: String,
+    /// The work of the detector in this command, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub detector: Option<Searched>,
+    /// The scenes that the run leaves out, with the reason.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub left_out: BTreeMap<String, Lack>,
+    /// The file of `--calibration`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<String>,
+    /// Calls, tokens and money of this command, if models took part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spent: Option<Spent>,
+    /// The reason, if the run stopped before its end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped: Option<String>,
+    /// The exit code for this outcome.
+    #[serde(skip)]
+    pub exit: Exit,
+}
+
+/// The work of a detector.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Searched {
+    /// The detector.
+    pub model: String,
+    /// The views that it looked at, including those with finds from the ledger.
+    pub views: usize,
+}
+
+impl Searched {
+    /// The work of a detector so far.
+    pub(super) fn by(lookout: &Lookout) -> Self {
+        Self { model: lookout.name().to_owned(), views: lookout.views() }
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+pub(super) fn summary(
+    folder: &Path,
+    run: &RunFolder,
+    items: usize,
+    spent: Option<Spent>,
+    stopped: Option<Stop>,
+) -> Result<Summary, Error> {
+    let (mut passed, mut unverified, mut finished, mut roles) = (0, 0, 0, None);
+    let (mut ambiguous, mut unfollowed, mut why_unfollowed) = (0, 0, None);
+    lines::each(&folder.join(file::INSTRUCTIONS), |line| {
+        let Told { verdict, provenance, ambiguity } = line.parse()?;
+        passed += usize::from(verdict == Verdict::Pass);
+        unverified += usize::from(verdict == Verdict::Unverified);
+        finished += usize::from(provenance.finished_for.is_some());
+        roles.get_or_insert_with(|| told(&provenance));
+        if let Some(ambiguity) = ambiguity {
+            ambiguous += usize::from(ambiguity.is_ambiguous());
+            unfollowed += usize::from(ambiguity.ends.is_none());
+            why_unfollowed = why_unfollowed.take().or(ambiguity.unverified);
+        }
+        Ok(())
+    })?;
+    let (asked_again, read_as_words) = misshapen(&folder.join(file::WALKS))?;
+    let exit = match (&stopped, run.rejected.len() + run.errors.len()) {
+        (Some(stop), _) => stop.exit,
+        (None, 0) => Exit::Done,
+        (None, _) => Exit::WithLoss,
+    };
+    Ok(Summary {
+        run: folder.display().to_string(),
+        items,
+        passed,
+        unverified,
+        finished_by_rules: finished,
+        ambiguous,
+        unfollowed,
+        why_unfollowed,
+        asked_again,
+        read_as_words,
+        rejected: run.rejected.len(),
+        errors: run.errors.len(),
+        first_loss: match first_failure(&folder.join(file::ERRORS))? {
+            None => first_rejection(&folder.join(file::REJECTED))?,
+            failed => failed,
+        },
+        roles: roles.unwrap_or_default(),
+        detector: None,
+        left_out: BTreeMap::new(),
+        calibration: None,
+        spent,
+        stopped: stopped.map(|stop| stop.reason),
+        exit,
+    })
+}
+
+/// Counts the views with an answer that lacked the requested form: those with a later answer that had it, and those without one.
+fn misshapen(walks: &Path) -> Result<(usize, usize), Error> {
+    let (mut mended, mut broken) = (0, 0);
+    if walks.exists() {
+        lines::each(walks, |line| {
+            let Seen { observations } = line.parse()?;
+            for look in observations.iter().flat_map(|seen| &seen.looks) {
+                mended += usize::from(look.caption.form == Some(Form::Mended));
+                broken += usize::from(look.caption.form == Some(Form::Broken));
+            }
+            Ok(())
+        })?;
+    }
+    Ok((mended, broken))
+}
+
+fn first_failure(errors: &Path) -> Result<Option<String>, Error> {
+    let first: Option<FailedItem> = first_line(errors)?;
+    Ok(first.map(|FailedItem { item, failure, reason }| format!("{item} ({}): {reason}", failure.name())))
+}
+
+fn first_rejection(rejected: &Path) -> Result<Option<String>, Error> {
+    let first: Option<Rejected> = first_line(rejected)?;
+    Ok(first.map(|Rejected { item, style, reason, .. }| format!("{item} ({style}): {reason}")))
+}
+
+fn first_line<T: DeserializeOwned>(file: &Path) -> Result<Option<T>, Error> {
+    let mut first = None;
+    lines::each(file, |line| {
+        if first.is_none() {
+            first = Some(line.parse()?);
+        }
+        Ok(())
+    })?;
+    Ok(first)
+}
+
+/// The fields of an instruction's line that the summary counts and shows.
+#[derive(Deserialize)]
+struct Told {
+    verdict: Verdict,
+    provenance: Provenance,
+    #[serde(default)]
+    ambiguity: Option<Ambiguity>,
+}
+
+/// The fields of a walk's line that the summary counts.
+#[derive(Deserialize)]
+struct Seen {
+    #[serde(default)]
+    observations: Vec<Observation>,
+}
+
+fn told(provenance: &Provenance) -> String {
+    // The provenance has the detector's name, followed by the meaning of its scores in brackets.
+    let detector = provenance.detector.as_deref().and_then(|told| told.split(" (").next());
+    let finds = detector.map_or(String::new(), |name| format!(", finds by {name}"));
+    format!(
+        "questions by {}, answers by {}{finds}, summary by {}, text by {}; checked against {}",
+        provenance.asker,
+        provenance.answerer,
+        provenance.summariser,
+        provenance.finished_for.as_ref().unwrap_or(&provenance.writer),
+        provenance.checked_against
+    )
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let so_far = if self.stopped.is_some() { " in the run, so far" } else { "" };
+        writeln!(
+            f,
+            "{}{so_far}: {} passed every check, {} unverified, {} rejected",
+            count(self.items, "item"),
+            count(self.passed, "instruction"),
+            self.unverified,
+            self.rejected
+        )?;
+        if self.errors > 0 {
+            writeln!(
+                f,
+                "{} failed (see errors.jsonl); remove the cause, and the same command tries again",
+                count(self.errors, "item")
+            )?;
+        }
+        if let Some(loss) = &self.first_loss {
+            writeln!(f, "first {}: {}", if self.errors > 0 { "failed item" } else { "rejected text" }, tame(loss))?;
+        }
+        if !self.roles.is_empty() {
+            writeln!(f, "roles: {}", self.roles)?;
+        }
+        if let Some(Searched { model, views }) = &self.detector {
+            writeln!(f, "detector: {model} looked at {}", count(*views, "view"))?;
+        }
+        if self.finished_by_rules > 0 {
+            let finished = count(self.finished_by_rules, "instruction");
+            writeln!(f, "{finished} written by rules, because every text of the model failed a check")?;
+        }
+        if self.asked_again + self.read_as_words > 0 {
+            writeln!(
+                f,
+                "views whose answer lacked the form that was asked for: {} asked for again, {} read as words",
+                self.asked_again, self.read_as_words
+            )?;
+        }
+        if self.ambiguous > 0 {
+            writeln!(f, "ambiguous: {} may mean several places or objects", count(self.ambiguous, "instruction"))?;
+        }
+        if let (Some(why), 1..) = (&self.why_unfollowed, self.unfollowed) {
+            writeln!(f, "not followed: {}; {}", count(self.unfollowed, "instruction"), tame(why))?;
+        }
+        if !self.left_out.is_empty() {
+            let names: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
+            writeln!(f, "left out: {} ({})", count(names.len(), "scene"), names.join(", "))?;
+        }
+        if let Some(file) = &self.calibration {
+            writeln!(f, "calibration: {file}")?;
+        }
+        if let Some(spent) = &self.spent {
+            writeln!(f, "models: {spent}")?;
+        }
+        if let Some(reason) = &self.stopped {
+            writeln!(f, "stopped before the end: {reason}")?;
+        }
+        write!(f, "run folder: {}", self.run)
+    }
+}

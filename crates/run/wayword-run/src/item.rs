@@ -1,0 +1,222 @@
+//! The items of a run: episodes of a dataset, or random paths, which are drawn only when their turn comes.
+
+use crate::{error::Error, settings::Settings};
+use std::{collections::BTreeSet, path::Path as FilePath, sync::Arc};
+use wayword_core::{ObjectId, Path, Platform, PlatformError, SceneId, ViewpointId, seed};
+use wayword_formats::Episode;
+use wayword_world::path_of;
+
+/// A path to write instructions for.
+#[derive(Debug, Clone)]
+pub enum Item {
+    /// An episode of a dataset.
+    Episode(Box<Episode>),
+    /// A path that is known already.
+    Walk(Box<Path>),
+    /// A random path.
+    Random {
+        /// Its name.
+        id: String,
+        /// All scenes of the run.
+        scenes: Arc<[SceneId]>,
+        /// Index of its scene. If that scene has no path of the requested length, the next scenes are tried.
+        first: usize,
+        /// Its own seed.
+        seed: u64,
+    },
+}
+
+/// The items of a run, in their order.
+///
+/// # Errors
+/// When the episodes or their scenes cannot be read, or no item is left.
+pub fn items(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+    let mut items = match &settings.episodes {
+        Some(file) => episodes(file, settings, platform)?,
+        None => random(settings, platform)?,
+    };
+    items.truncate(settings.limit.unwrap_or(usize::MAX));
+    if items.is_empty() {
+        let problem = match settings.scan.is_empty() {
+            true => "there are no episodes",
+            false => "no episode is in the scenes that --scan names",
+        };
+        return Err(Error::usage(problem, "check --episodes and --scan"));
+    }
+    platform.check(&items.iter().map(Item::scene).collect())?;
+    Ok(items)
+}
+
+fn episodes(file: &FilePath, settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+    let episodes = wayword_formats::read(file)?;
+    if let Some(blind) = episodes.iter().find(|episode| episode.viewpoints.is_empty()) {
+        let problem = format!("{}: episode {} names no viewpoints, but paths need them", file.display(), blind.id);
+        return Err(Error::usage(
+            problem,
+            "give an R2R, REVERIE or RxR file, or a Wayword file whose paths name viewpoints (of matterport, say)",
+        ));
+    }
+    let wanted =
+        |episode: &Episode| settings.scan.is_empty() || settings.scan.iter().any(|scan| scan == episode.scene.as_str());
+    // Every scene gets its one official name, because under two names it could come into two splits.
+    let called = |mut episode: Episode| {
+        episode.scene = platform.called(&episode.scene);
+        episode
+    };
+    Ok(episodes.into_iter().filter(wanted).map(called).map(|episode| Item::Episode(Box::new(episode))).collect())
+}
+
+fn random(settings: &Settings, platform: &dyn Platform) -> Result<Vec<Item>, Error> {
+    let mut scenes = Vec::new();
+    for name in &settings.scan {
+        let scene = SceneId::new(name.as_str())
+            .map_err(|error| Error::usage(format!("--scan {name}: {error}"), "give the name of a scene"))?;
+        if settings.left_out.contains_key(name) {
+            continue;
+        }
+        platform.graph(&scene)?;
+        scenes.push(platform.called(&scene));
+    }
+    if settings.scan.is_empty() {
+        scenes = platform.scenes()?;
+    }
+    scenes.retain(|scene| !settings.left_out.contains_key(scene.as_str()));
+    if scenes.is_empty() {
+        return Err(Error::usage("the platform has no scene", "check --data"));
+    }
+    // A single scene without walkable ground is refused here; otherwise every item of the run would fail.
+    if let [scene] = &scenes[..] {
+        platform.islands(scene)?;
+    }
+    let scenes: Arc<[SceneId]> = scenes.into();
+    let item = |number: usize| Item::Random {
+        id: format!("random-{}-{number}", settings.seed),
+        scenes: Arc::clone(&scenes),
+        first: first_scene(number, settings, scenes.len()),
+        seed: seed::derive(settings.seed, &["path", &number.to_string()]),
+    };
+    let number_of_scenes = scenes.len();
+    let items: Vec<Item> = (0..settings.paths).map(item).collect();
+    if platform.name() == RECORDING && number_of_scenes <= MOST_LOOKED_AT {
+        return Ok(without_repeats(items, settings, platform));
+    }
+    Ok(items)
+}
+
+/// The platform with random paths that may all be equal: of a short recording, each path is the whole.
+const RECORDING: &str = "recording";
+/// With more recordings than this, equal paths are not searched for, because all recordings would have to be opened.
+const MOST_LOOKED_AT: usize = 8;
+
+/// Removes items with the same path as an earlier item. Items without a path stay, so that the run reports the reason.
+fn without_repeats(items: Vec<Item>, settings: &Settings, platform: &dyn Platform) -> Vec<Item> {
+    let mut taken: BTreeSet<(SceneId, Vec<Option<ViewpointId>>)> = BTreeSet::new();
+    let mut is_new = |item: &Item| {
+        let Ok(path) = item.path(settings, platform) else { return true };
+        taken.insert((path.scene, path.frames.into_iter().map(|frame| frame.viewpoint).collect()))
+    };
+    items.into_iter().filter(|item| is_new(item)).collect()
+}
+
+/// The scene of a random path. Paths go scene by scene, because a platform keeps only the last few scenes loaded. Paths that were
+/// asked for later go through the scenes again, so that earlier paths stay in their scenes.
+fn first_scene(number: usize, settings: &Settings, scenes: usize) -> usize {
+    let steps = settings.raised_from.iter().copied().chain([settings.paths]);
+    let mut start = 0;
+    for end in steps {
+        if number < end {
+            return (number - start) * scenes / (end - start);
+        }
+        start = end;
+    }
+    0
+}
+
+impl Item {
+    /// Its name, unique within the run; known before its path is.
+    #[must_use]
+    pub fn id(&self) -> String {
+        match self {
+            Self::Episode(episode) => episode.id.clone(),
+            Self::Walk(path) => path.id.clone(),
+            Self::Random { id, .. } => id.clone(),
+        }
+    }
+
+    /// The scene that is tried first.
+    pub(crate) fn scene(&self) -> &SceneId {
+        match self {
+            Self::Episode(episode) => &episode.scene,
+            Self::Walk(path) => &path.scene,
+            Self::Random { scenes, first, .. } => &scenes[*first],
+        }
+    }
+
+    /// Its path.
+    ///
+    /// # Errors
+    /// When an episode does not fit its scene, or no scene has a random path of the length asked for.
+    pub fn path(&self, settings: &Settings, platform: &dyn Platform) -> Result<Path, PlatformError> {
+        match self {
+            Self::Episode(episode) => path_of(
+                platform,
+                self.id(),
+                &episode.scene,
+                &episode.viewpoints,
+                episode.start_heading,
+                episode.target_object.as_ref(),
+            ),
+            Self::Walk(path) => Ok((**path).clone()),
+            Self::Random { id, scenes, first: start, seed } => {
+                let sample = |scene: &SceneId| platform.sample_path(scene, &settings.request, *seed);
+                let mut sampled = (0..scenes.len()).map(|off| sample(&scenes[(start + off) % scenes.len()]));
+                let fits = |path: &Result<Path, PlatformError>| !matches!(path, Err(PlatformError::NoSuchPath { .. }));
+                let first = sampled.next();
+                let path = match first.filter(fits).or_else(|| sampled.find(fits)) {
+                    Some(path) => path?,
+                    None => sample(&scenes[*start])?,
+                };
+                Ok(Path { id: id.clone(), ..path })
+            }
+        }
+    }
+
+    /// The instructions that the dataset has for it.
+    #[must_use]
+    pub fn originals(&self) -> &[String] {
+        match self {
+            Self::Episode(episode) => &episode.instructions,
+            Self::Walk(_) | Self::Random { .. } => &[],
+        }
+    }
+
+    /// The name of its path in its dataset. Several items may share it.
+    #[must_use]
+    pub fn path_id(&self) -> String {
+        match self {
+            Self::Episode(episode) => episode.path_id.clone(),
+            Self::Walk(path) => path.id.clone(),
+            Self::Random { id, .. } => id.clone(),
+        }
+    }
+}
+
+/// Refuses ids that the run folder cannot use, because items are found by them and files are named after them.
+///
+/// # Errors
+/// When two items share an id, or one cannot be part of a file name.
+pub fn check_names(items: &[Item]) -> Result<(), Error> {
+    let mut seen = BTreeSet::new();
+    for id in items.iter().map(Item::id) {
+        ObjectId::new(id.as_str()).map_err(|error| {
+            Error::usage(format!("an item's id cannot be used: {error}"), "change its id in the episodes file")
+        })?;
+        if !seen.insert(id.clone()) {
+            return Err(Error::usage(
+                format!("item {id} occurs twice"),
+                "give each item of the episodes file its own id",
+            ));
+        }
+    }
+    Ok(())
+}

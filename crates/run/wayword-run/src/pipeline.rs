@@ -1,0 +1,295 @@
+//! Makes one item: looks along its path, describes the views, writes a text in each style, checks it, and repairs or rejects it.
+
+use crate::{
+    at_once::at_once,
+    error::Error,
+    follow::{Followed, GOES_UNKNOWN, KnownScenes, Told, rejection},
+    item::Item,
+    looking_for::Lookout,
+    pictures::{self, Picture},
+    platforms::Remembering,
+    run_folder::WorldData,
+    settings::{Settings, Sources, TargetMode},
+    styles::Measured,
+    team::Team,
+};
+use std::collections::BTreeMap;
+use wayword_checks::{Checked, Evidence, Memory, Source};
+use wayword_core::{Ambiguity, Caption, Frame, Gaze, ModelError, Path, Platform, PlatformError, SceneId, View};
+use wayword_ledger::Occasion;
+use wayword_synthesis::{
+    detection::{alone, seek},
+    observe::{Planned, gazes_around, observe_with, talk_about},
+    offline::{around, describe},
+    repair::{Follow, Order, Outcome, write_and_repair},
+    walk::Walk,
+    writer::FramePicture,
+};
+
+/// The result of an item.
+#[derive(Debug)]
+pub struct Made {
+    /// The path and what was seen along it.
+    pub walk: Walk,
+    /// As many per style as each path gets, in the order of the run's styles.
+    pub outcomes: Vec<Outcome>,
+    /// The picture ahead of each frame, if the platform has pictures.
+    pub pictures: Vec<Picture>,
+}
+
+/// The platform of a run, with the recorded hashes of its files.
+#[derive(Clone, Copy)]
+pub struct RunPlatform<'a> {
+    /// The platform.
+    pub platform: &'a dyn Platform,
+    /// The hashes that the files of its scenes must have; `None` outside a run folder.
+    pub data: Option<&'a WorldData>,
+    /// The surveyed scenes around its paths.
+    pub scenes: &'a KnownScenes,
+}
+
+/// The texts to write for an item.
+#[derive(Clone, Copy)]
+pub struct Ordered<'a> {
+    /// Their styles.
+    pub styles: &'a [Measured],
+    /// For styles in this map, the number of the one candidate to write; all candidates are written for the others.
+    pub only: &'a BTreeMap<String, u32>,
+}
+
+/// The texts of an item, before they are written into the run folder.
+#[derive(Debug)]
+pub struct Written {
+    /// The path and what was seen along it.
+    pub walk: Walk,
+    /// As many per style as each path gets, in the order of the run's styles.
+    pub outcomes: Vec<Outcome>,
+    /// The view ahead of each frame.
+    ahead: Vec<View>,
+}
+
+/// Makes an item: its texts, and the pictures along its path. See [`write()`].
+///
+/// # Errors
+/// As for [`write()`].
+pub fn make(
+    item: &Item,
+    settings: &Settings,
+    world: RunPlatform<'_>,
+    team: &Team,
+    styles: &[Measured],
+    threads: usize,
+) -> Result<Made, Error> {
+    let order = Ordered { styles, only: &BTreeMap::new() };
+    let Written { walk, outcomes, ahead } = write(item, settings, world, team, order, threads)?;
+    Ok(Made { walk, outcomes, pictures: pictures::encode(&ahead)? })
+}
+
+/// Writes an item's instructions. Up to `threads` views are described at the same time, and up to as many styles written; the
+/// results do not depend on this number.
+///
+/// # Errors
+/// When its path does not fit its scene, the files of the scene have changed since the run began, a view cannot be had, or a model
+/// gives no answer.
+pub fn write(
+    item: &Item,
+    settings: &Settings,
+    world: RunPlatform<'_>,
+    team: &Team,
+    Ordered { styles, only }: Ordered<'_>,
+    threads: usize,
+) -> Result<Written, Error> {
+    let RunPlatform { platform, data, scenes } = world;
+    let world = Remembering::new(platform);
+    let mut path = path(item, settings, &world)?;
+    describe_target(&mut path, platform, scenes)?;
+    if let Some(data) = data {
+        data.check(platform, &path.scene)?;
+    }
+    let observers = team.observers();
+    let talk = |views: &[Planned]| -> Result<Vec<Caption>, ModelError> {
+        // The other views are described although one fails, so the error is always that of the first failing view in order.
+        let ends = |told: &Result<Caption, ModelError>| told.as_ref().is_err_and(ModelError::ends_run);
+        at_once(views, threads, |planned| talk_about(&planned.view, observers), ends).into_iter().collect()
+    };
+    let mut observations = observe_with(&world, &path, settings.frames, observers, &talk)?;
+    if let Some(lookout) = team.lookout() {
+        let looked = Occasion::with_purpose("detect", || seek(&world, &path, &mut observations, lookout.seeker()))?;
+        lookout.has_looked_at(looked);
+    }
+    let walk = Walk::new(path, observations);
+    let detector = team.lookout().map(Lookout::name);
+    let mut evidence = evidence(&walk, &world, settings.evidence, detector)?;
+    // With labels, the writer's memory has everything that they list around each frame; with a model, what its captions name.
+    let sees_labels = team.observers().answerer.name() == "labels" && evidence.source == Source::Labels;
+    let memory = if sees_labels { Memory::of(&evidence, &walk.path) } else { walk.memory() };
+    let scene = match evidence.source {
+        Source::Labels => Some(scenes.get(platform, &walk.path.scene)?),
+        _ => None,
+    };
+    if let Some(scene) = &scene {
+        evidence.beyond = scene.listed.beyond(&walk.path);
+    }
+    let followed = match scene.as_deref() {
+        None if evidence.motion.is_known() => Err("the texts are not checked against labels"),
+        None => Err(GOES_UNKNOWN),
+        scene => Followed::new(scene, &walk.path, &evidence),
+    };
+    let follower = Follower { followed, evidence: &evidence, rejects_ambiguous: settings.reject_ambiguous };
+    let ahead = ahead(&world, &walk.path)?;
+    let shown = if settings.roles.write_sees { shown(&ahead, &settings.roles.write)? } else { Vec::new() };
+    let of_style = |Measured { style, profile, hash }: &Measured| {
+        let order = Order {
+            walk: &walk,
+            memory: &memory,
+            evidence: &evidence,
+            style,
+            profile,
+            style_hash: hash,
+            seed: settings.seed,
+            repairs: settings.repairs,
+            candidates: settings.candidates,
+            only: only.get(&style.name).copied(),
+            follower: (!settings.no_route).then_some(&follower),
+            earlier: &[],
+            pictures: &shown,
+        };
+        texts(team, order, settings.per_path)
+    };
+    let ends = |texts: &Result<Vec<Outcome>, ModelError>| texts.as_ref().is_err_and(ModelError::ends_run);
+    let outcomes = at_once(styles, threads, of_style, ends).into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(Written { walk, outcomes: outcomes.into_iter().flatten().collect(), ahead })
+}
+
+/// The texts of one walk in one style. Each has to differ from those before it.
+fn texts(team: &Team, order: Order<'_>, number: usize) -> Result<Vec<Outcome>, ModelError> {
+    let (mut outcomes, mut earlier) = (Vec::new(), Vec::new());
+    for _ in 0..number {
+        let outcome = write_and_repair(team.writers(), team.observers(), Order { earlier: &earlier, ..order })?;
+        earlier.push(match &outcome {
+            Outcome::Accepted(instruction) | Outcome::Rejected { last: Some(instruction), .. } => {
+                instruction.text.clone()
+            }
+            Outcome::Rejected { last: None, .. } => String::new(),
+        });
+        outcomes.push(outcome);
+    }
+    Ok(outcomes)
+}
+
+/// The most pictures that a writer is shown. From a longer path these are the first, the last, and others at equal distances
+/// between them.
+pub(crate) const MOST_SHOWN: usize = 16;
+
+/// The pictures that a writer is shown.
+///
+/// # Errors
+/// When there are none.
+fn shown(ahead: &[View], writer: &str) -> Result<Vec<FramePicture>, ModelError> {
+    let pictures = ahead.iter().enumerate().filter_map(|(frame, view)| Some((frame, view.image.clone()?)));
+    let all: Vec<FramePicture> = pictures.map(|(frame, image)| FramePicture { frame, image }).collect();
+    if all.is_empty() {
+        return Err(ModelError::NothingToSee {
+            name: writer.to_owned(),
+            needs: "pictures for --write-sees",
+            hint: "use a platform or data folder with pictures, or leave --write-sees out",
+        });
+    }
+    let kept = all.len().min(MOST_SHOWN);
+    let places = (0..kept).map(|at| at * (all.len() - 1) / (kept - 1).max(1));
+    Ok(places.map(|at| all[at].clone()).collect())
+}
+
+/// Follows the texts of one path.
+struct Follower<'a> {
+    /// The path, or the reason why it cannot be followed.
+    followed: Result<Followed<'a>, &'static str>,
+    evidence: &'a Evidence,
+    rejects_ambiguous: bool,
+}
+
+impl Follow for Follower<'_> {
+    fn follow(&self, text: &str, checked: &mut Checked) -> Ambiguity {
+        let told = match &self.followed {
+            Ok(followed) => followed.route(text),
+            Err(why) => Told::unknown(why),
+        };
+        told.add_to(checked);
+        let ambiguity = told.ambiguity(text, self.evidence);
+        checked.add(rejection(&ambiguity).filter(|_| self.rejects_ambiguous));
+        ambiguity
+    }
+
+    fn leads_there(&self, text: &str) -> Option<f64> {
+        self.followed.as_ref().ok()?.leads_there(text)
+    }
+}
+
+/// The path of an item. With `TargetMode::Free` its target is removed, because the writer chooses one.
+///
+/// # Errors
+/// When it does not fit its scene.
+pub fn path(item: &Item, settings: &Settings, world: &Remembering<'_>) -> Result<Path, Error> {
+    let mut path = item.path(settings, world)?;
+    if settings.target == TargetMode::Free {
+        path.target = None;
+    }
+    Ok(path)
+}
+
+/// Fills in the description that distinguishes the target of a path from everything else in its building; if the building has no
+/// list of objects, from everything around the path's end.
+fn describe_target(path: &mut Path, platform: &dyn Platform, scenes: &KnownScenes) -> Result<(), Error> {
+    let (Some(target), Some(last)) = (&mut path.target, path.frames.last()) else { return Ok(()) };
+    let seen = around(last, &labels_at(platform, &path.scene, last, &Gaze::around(last.pose.heading))?);
+    if !seen.knows(last) {
+        return Ok(());
+    }
+    let scene = scenes.get(platform, &path.scene)?;
+    describe(target, last, if scene.listing.knows(last) { &scene.listing } else { &seen });
+    Ok(())
+}
+
+/// The views around each frame: ahead, right, behind, left; only ahead if the motion is unknown. Pictures may be missing.
+///
+/// # Errors
+/// When a view cannot be had.
+pub fn panoramas(platform: &dyn Platform, path: &Path) -> Result<Vec<Vec<View>>, PlatformError> {
+    let views = |frame: &Frame| labels_at(platform, &path.scene, frame, &gazes_around(path, frame));
+    path.frames.iter().map(views).collect()
+}
+
+fn labels_at(
+    platform: &dyn Platform,
+    scene: &SceneId,
+    frame: &Frame,
+    gazes: &[Gaze],
+) -> Result<Vec<View>, PlatformError> {
+    gazes.iter().map(|gaze| platform.look_without_picture(scene, frame, *gaze)).collect()
+}
+
+/// The view ahead of each frame.
+fn ahead(platform: &dyn Platform, path: &Path) -> Result<Vec<View>, PlatformError> {
+    let look = |frame: &Frame| platform.look(&path.scene, frame, Gaze::quarter(frame.pose.heading));
+    path.frames.iter().map(look).collect()
+}
+
+/// Collects the evidence that texts are checked against: labels if the settings want them and the platform has them, else
+/// captions and the finds of the detector of that name, else only the path.
+fn evidence(
+    walk: &Walk,
+    platform: &dyn Platform,
+    sources: Sources,
+    detector: Option<&str>,
+) -> Result<Evidence, PlatformError> {
+    // Collecting labels takes longer than everything else, so they are collected only if they are used.
+    let labels = match sources.labels {
+        true => Evidence::from_labels(&walk.path, &panoramas(platform, &walk.path)?),
+        false => None,
+    };
+    let heard = || match detector.filter(|_| sources.detector && !sources.captions) {
+        Some(detector) => Evidence::from_detector(&walk.path, &alone(&walk.observations, detector)),
+        None => walk.evidence(),
+    };
+    Ok(labels.or_else(heard).unwrap_or_else(|| Evidence::of_path_alone(&walk.path)))
+}

@@ -1,0 +1,136 @@
+//! Adds up the calls, tokens and money that a command would need from each model.
+
+use super::Models;
+use crate::count::count;
+use serde::Serialize;
+use std::fmt;
+
+/// The expected load of each model, one entry per model.
+#[derive(Debug, Default, Serialize)]
+#[serde(transparent)]
+pub struct Bill(Vec<Asked>);
+
+/// The expected load of one model in all its roles.
+#[derive(Debug, Default, Serialize)]
+struct Asked {
+    model: String,
+    roles: Vec<&'static str>,
+    calls: u64,
+    tokens_in: u64,
+    tokens_out: u64,
+    /// US dollars; absent if the model's price is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    usd: Option<f64>,
+    /// The day of the price list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    price_as_of: Option<String>,
+}
+
+/// Calls and tokens of one role.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Load {
+    pub calls: u64,
+    pub tokens_in: u64,
+    pub tokens_out: u64,
+}
+
+/// Pixels of a picture for each of its tokens, as two large providers count.
+const PIXELS_PER_TOKEN: u64 = 750;
+
+/// Tokens of a picture of 4 by 3, as wide as pictures are sent at most.
+pub fn picture_tokens(picture_px: u32) -> u64 {
+    u64::from(picture_px).pow(2) * 3 / 4 / PIXELS_PER_TOKEN
+}
+
+impl Bill {
+    /// Adds the load of a model in one role.
+    pub fn add(&mut self, model: &str, role: &'static str, load: Load) {
+        let at = self.0.iter().position(|asked| asked.model == model).unwrap_or_else(|| {
+            self.0.push(Asked { model: model.to_owned(), ..Asked::default() });
+            self.0.len() - 1
+        });
+        if let Some(asked) = self.0.get_mut(at) {
+            asked.roles.push(role);
+            asked.calls += load.calls;
+            asked.tokens_in += load.tokens_in;
+            asked.tokens_out += load.tokens_out;
+        }
+    }
+
+    /// Fills in what each model costs, where that is known.
+    pub fn price(&mut self, models: &Models<'_>) {
+        for asked in &mut self.0 {
+            let price = models.price(&asked.model);
+            asked.usd = price.map(|price| price.usd(asked.tokens_in, asked.tokens_out));
+            asked.price_as_of = price.map(|price| price.as_of.clone());
+        }
+    }
+
+    /// Calls of all models.
+    pub(crate) fn calls(&self) -> u64 {
+        self.0.iter().map(|asked| asked.calls).sum()
+    }
+
+    /// US dollars of all models; `None` if a price is not known.
+    pub(crate) fn usd(&self) -> Option<f64> {
+        self.0.iter().map(|asked| asked.usd).sum()
+    }
+
+    /// Whether no model would be asked.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl Load {
+    /// Adds a call.
+    pub fn call(&mut self, prompt: &str, tokens_out: u64) {
+        // English text has about four characters per token.
+        self.add(Self { calls: 1, tokens_in: prompt.len().div_ceil(4) as u64, tokens_out });
+    }
+
+    /// Adds another load.
+    pub(crate) fn add(&mut self, other: Self) {
+        *self = self.plus(other);
+    }
+
+    /// The sum of both.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            calls: self.calls + other.calls,
+            tokens_in: self.tokens_in + other.tokens_in,
+            tokens_out: self.tokens_out + other.tokens_out,
+        }
+    }
+
+    /// This load, multiplied by a number.
+    pub fn times(self, times: u64) -> Self {
+        Self { calls: self.calls * times, tokens_in: self.tokens_in * times, tokens_out: self.tokens_out * times }
+    }
+}
+
+/// A line for each model, and one for all.
+impl fmt::Display for Bill {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for asked in &self.0 {
+            write!(
+                f,
+                "  {} ({}): {}, about {} in, {} out",
+                asked.model,
+                asked.roles.join(", "),
+                count(asked.calls, "call"),
+                count(asked.tokens_in, "token"),
+                asked.tokens_out
+            )?;
+            match (asked.usd, &asked.price_as_of) {
+                (Some(0.0), _) => writeln!(f, ", free: it runs in process")?,
+                (Some(usd), Some(day)) => writeln!(f, ", about ${usd:.2} (prices of {day})")?,
+                _ => writeln!(f, ", price not known (see --prices)")?,
+            }
+        }
+        match self.usd() {
+            Some(usd) => write!(f, "in all: about ${usd:.2}"),
+            None => write!(f, "in all: not known, because a price is missing"),
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Opens platforms by their names, and lists them for `wayword platforms`.
+
+mod inside;
+#[cfg(feature = "live")]
+mod live;
+mod remembering;
+
+use crate::{
+    error::Error,
+    output,
+    settings::{AskedPlatform, Settings},
+    similar::did_you_mean,
+    stores,
+};
+use std::{path::Path, sync::Arc};
+use wayword_core::Platform;
+#[cfg(feature = "habitat")]
+use wayword_habitat::{HabitatOptions, HabitatPlatform};
+use wayword_house::HousePlatform;
+use wayword_platforms::{matterport::Matterport, process};
+use wayword_recording::RecordingPlatform;
+
+pub use inside::{forget_inside, put_inside};
+pub use remembering::Remembering;
+
+/// Number of scene surveys that a command keeps in memory.
+pub const SCENES_KEPT: usize = 128;
+
+/// A platform, as `wayword platforms` lists it.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Listed {
+    /// Its name, as `--platform` takes it.
+    pub name: &'static str,
+    /// A short description.
+    pub what: &'static str,
+    /// The data or address that it needs.
+    pub needs: &'static str,
+    /// The pictures and labels that it offers.
+    pub offers: &'static str,
+    /// Whether this build has it.
+    pub is_here: bool,
+}
+
+/// All platforms, in this build or not.
+pub const PLATFORMS: [Listed; 7] = [
+    Listed {
+        name: "house",
+        what: "generated homes, built in",
+        needs: "nothing",
+        offers: "pictures, labels, rooms, storeys",
+        is_here: true,
+    },
+    Listed {
+        name: "matterport",
+        what: "Matterport3D's buildings, from files",
+        needs: "--data DIR with connectivity/ (docs/DATA.md lists what else is used)",
+        offers: "rooms, storeys; labels with REVERIE's boxes or .house files; pictures with photographs",
+        is_here: true,
+    },
+    Listed {
+        name: "process",
+        what: "any simulator in any language, as a child process (docs/PROCESS.md)",
+        needs: "--data FILE: a world file, or the program itself",
+        offers: "what that program says it offers",
+        is_here: true,
+    },
+    Listed {
+        name: "habitat",
+        what: "AI Habitat's scenes, without Habitat",
+        needs: "--data FILE or DIR: .glb, .gltf or .stage_config.json, with the .navmesh beside it or baked; or --connectivity DIR of viewpoint graphs",
+        offers: "pictures, geodesic paths or paths along the graphs; labels and rooms with semantic files",
+        is_here: cfg!(feature = "habitat"),
+    },
+    Listed {
+        name: "tdw",
+        what: "ThreeDWorld: waits for a build to connect",
+        needs: "a TDW build started with -port 1071, or another as in --at 127.0.0.1:1072; --data PACKAGE for furnished floor plans",
+        offers: "pictures; labels of furniture, only in furnished plans (floorplan_1a_0)",
+        is_here: cfg!(feature = "live"),
+    },
+    Listed {
+        name: "virtualhome",
+        what: "VirtualHome's executable, while it runs",
+        needs: "its HTTP address, as in --at http://127.0.0.1:8080 (the default)",
+        offers: "pictures, labels, rooms",
+        is_here: cfg!(feature = "live"),
+    },
+    Listed {
+        name: "recording",
+        what: "recordings of robots: folders of pictures, MP4, MCAP, LeRobot datasets",
+        needs: match (cfg!(feature = "mcap"), cfg!(all(feature = "lerobot", feature = "video"))) {
+            (true, true) => {
+                "--data FILE or DIR, with poses in it or beside it for turns and distances (docs/RECORDINGS.md)"
+            }
+            (true, false) => {
+                "--data DIR of pictures or MCAP, with poses in it or beside it for turns and distances (docs/RECORDINGS.md); MP4 and LeRobot may need the feature full"
+            }
+            _ => {
+                "--data DIR of pictures, with poses beside them for turns and distances (docs/RECORDINGS.md); other recordings may need the feature full"
+            }
+        },
+        offers: "pictures along the recorded path and no labels, so --see has to name a model",
+        is_here: true,
+    },
+];
+
+/// The names of all platforms, as `--platform` takes them.
+pub(crate) fn names() -> [&'static str; PLATFORMS.len()] {
+    PLATFORMS.map(|platform| platform.name)
+}
+
+/// Whether random paths of a platform can have hops. Elsewhere they run over open ground, and `--hops` has no effect. A
+/// recording with poses has none either, but whether it has poses is known only once it is opened.
+pub fn has_hops(settings: &Settings) -> bool {
+    settings.connectivity.is_some() || matches!(&*settings.platform, "matterport" | "process" | "recording")
+}
+
+/// Whether a platform is a separate program that this one connects to by `--at`.
+fn is_live(name: &str) -> bool {
+    matches!(name, "tdw" | "virtualhome")
+}
+
+/// Where the scenes of a platform are, from flags or settings.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Place<'a> {
+    /// The folder or file of its data.
+    pub data: Option<&'a Path>,
+    /// The address of a running simulator.
+    pub at: Option<&'a str>,
+    /// The island of a Habitat navmesh on which paths are drawn.
+    pub island: Option<usize>,
+    /// The folder of viewpoint graphs along which Habitat's scenes are walked.
+    pub connectivity: Option<&'a Path>,
+}
+
+impl<'a> From<&'a AskedPlatform> for Place<'a> {
+    fn from(asked: &'a AskedPlatform) -> Self {
+        let AskedPlatform { platform: _, data, at, island, connectivity } = asked;
+        Self { data: data.as_deref(), at: at.as_deref(), island: *island, connectivity: connectivity.as_deref() }
+    }
+}
+
+impl<'a> From<&'a Settings> for Place<'a> {
+    fn from(settings: &'a Settings) -> Self {
+        let Settings { data, at, island, connectivity, .. } = settings;
+        Self { data: data.as_deref(), at: at.as_deref(), island: *island, connectivity: connectivity.as_deref() }
+    }
+}
+
+/// Opens the platform that the settings name, and warns if its data lacks objects.
+///
+/// # Errors
+/// When there is no platform of that name, or its data cannot be opened.
+pub fn open(settings: &Settings) -> Result<Box<dyn Platform>, Error> {
+    open_and_warn(&settings.platform, Place::from(settings))
+}
+
+/// As [`open_at`], and warns if the data has no files with objects.
+///
+/// # Errors
+/// As [`open_at`].
+pub fn open_and_warn(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
+    let platform = open_at(name, place)?;
+    if name == "matterport"
+        && let Some(data) = place.data
+        && let Some(lack) = Matterport::lack_of_objects(&stores::local(data)?)
+    {
+        output::pass_on(&lack);
+    }
+    Ok(platform)
+}
+
+/// Opens a platform by its name, with the folder or file of its data, or the address of a running one, and the island
+/// of its navmesh on which paths are drawn.
+///
+/// # Errors
+/// When there is none of that name in this build, or its data cannot be opened.
+pub fn open_named(
+    name: &str,
+    data: Option<&Path>,
+    at: Option<&str>,
+    island: Option<usize>,
+) -> Result<Box<dyn Platform>, Error> {
+    open_at(name, Place { data, at, island, ..Place::default() })
+}
+
+/// Opens a platform by its name, with where its scenes are.
+///
+/// # Errors
+/// When there is none of that name in this build, its data cannot be opened, or it does not use a part of `place`.
+pub fn open_at(name: &str, place: Place<'_>) -> Result<Box<dyn Platform>, Error> {
+    let Place { data, island, connectivity, .. } = place;
+    if let Some((flag, example)) = unused(name, place) {
+        let default = if name == "house" { ", the default," } else { "" };
+        return Err(Error::usage(
+            format!("platform {name}{default} takes no {flag}"),
+            format!("say with --platform which platform this {flag} is for, as in --platform {example}"),
+        ));
+    }
+    if island.is_some() && connectivity.is_some() {
+        return Err(Error::usage(
+            "--island and --connectivity cannot be combined: a scene with a graph is not walked on a navmesh",
+            "give one of them",
+        ));
+    }
+    let data = || data.ok_or_else(|| no_data(name)).and_then(stores::local);
+    match name {
+        "house" => Ok(Box::new(HousePlatform::default())),
+        "matterport" => Ok(Box::new(Matterport::open(&data()?)?)),
+        "process" => child(&data()?),
+        #[cfg(feature = "habitat")]
+        "habitat" => {
+            let connectivity = connectivity.map(Path::to_owned);
+            let options = HabitatOptions { island, connectivity, ..HabitatOptions::default() };
+            Ok(Box::new(HabitatPlatform::open(&data()?, options, Arc::new(output::pass_on))?))
+        }
+        #[cfg(feature = "live")]
+        "tdw" => live::tdw(place.data, place.at),
+        #[cfg(feature = "live")]
+        "virtualhome" => live::virtualhome(place.at),
+        "recording" => Ok(Box::new(RecordingPlatform::open(&data()?, Arc::new(output::pass_on))?)),
+        absent if PLATFORMS.iter().any(|platform| platform.name == absent) => {
+            Err(Error::not_built(format!("this build has no platform {absent}")))
+        }
+        other => Err(Error::usage(
+            format!("there is no platform {other:?}{}", did_you_mean(other, names())),
+            format!("name one of: {}", names().join(", ")),
+        )),
+    }
+}
+
+/// A platform that is another program, or an object of the program that this one runs in. If this program is killed, a second
+/// copy of it ends the other program.
+fn child(file: &Path) -> Result<Box<dyn Platform>, Error> {
+    if let Some(options) = inside::find(file)? {
+        return Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?));
+    }
+    let options = process::ProcessOptions { guard: process::this_program(), ..process::ProcessOptions::read(file)? };
+    Ok(Box::new(process::ProcessPlatform::start(options, Arc::new(output::pass_on))?))
+}
+
+/// The flag that a platform does not use, and one of the platforms that use it. Otherwise `--data` without `--platform`
+/// would silently give a generated house.
+fn unused(name: &str, place: Place<'_>) -> Option<(&'static str, &'static str)> {
+    match (place.data, place.at) {
+        (Some(_), _) if matches!(name, "house" | "virtualhome") => Some(("--data", "matterport")),
+        (_, Some(_)) if !is_live(name) => Some(("--at", "tdw")),
+        _ if place.island.is_some() && name != "habitat" => Some(("--island", "habitat")),
+        _ if place.connectivity.is_some() && name != "habitat" => Some(("--connectivity", "habitat")),
+        _ => None,
+    }
+}
+
+pub fn no_data(name: &str) -> Error {
+    let needs = PLATFORMS.into_iter().find(|platform| platform.name == name).map_or("", |platform| platform.needs);
+    Error::usage(format!("platform {name} needs --data"), format!("give {needs}"))
+}

@@ -1,0 +1,149 @@
+//! Wraps a platform with a cache of its views, so that each view is rendered or read once.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::PathBuf,
+    sync::{Arc, Mutex, PoisonError},
+};
+use wayword_core::{
+    Depth, Frame, FromAbove, Gaze, Island, ObjectId, Path, PathRequest, Placed, Platform, PlatformError, SceneId, View,
+    ViewpointGraph, ViewpointId, Way,
+};
+
+/// A platform that caches its views, because perception, evidence and report look at the same ones.
+pub struct Remembering<'a> {
+    platform: &'a dyn Platform,
+    views: Mutex<BTreeMap<Key, View>>,
+    /// Whether its views have pictures.
+    has_pictures: bool,
+}
+
+/// Scene, place, heading and width, as bits: equal looks give equal views.
+type Key = (SceneId, ([u64; 3], Option<ViewpointId>), u64, u64);
+
+impl<'a> Remembering<'a> {
+    /// An empty cache over a platform.
+    #[must_use]
+    pub fn new(platform: &'a dyn Platform) -> Self {
+        Self { platform, views: Mutex::default(), has_pictures: true }
+    }
+
+    /// The same without pictures, for callers that read only labels. The labels of all views of a run fit into memory.
+    #[must_use]
+    pub fn labels_of(platform: &'a dyn Platform) -> Self {
+        Self { has_pictures: false, ..Self::new(platform) }
+    }
+
+    fn remembered(&self, key: &Key) -> Option<View> {
+        self.views.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+    }
+
+    fn remember(&self, key: Key, view: &View) {
+        self.views.lock().unwrap_or_else(PoisonError::into_inner).insert(key, view.clone());
+    }
+
+    fn labels(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        let key = key(scene, from, gaze);
+        if let Some(view) = self.remembered(&key) {
+            return Ok(view);
+        }
+        let mut view = self.platform.look_without_picture(scene, from, gaze)?;
+        view.image = None;
+        self.remember(key, &view);
+        Ok(view)
+    }
+}
+
+fn key(scene: &SceneId, from: &Frame, gaze: Gaze) -> Key {
+    // Headings that differ only by rounding look at the same thing.
+    let micro_rad = |rad: f64| (rad * 1e6).round() as u64;
+    (scene.clone(), from.place(), micro_rad(gaze.heading.rad()), micro_rad(gaze.horizontal_fov_rad))
+}
+
+impl Platform for Remembering<'_> {
+    fn name(&self) -> &'static str {
+        self.platform.name()
+    }
+
+    fn scenes(&self) -> Result<Vec<SceneId>, PlatformError> {
+        self.platform.scenes()
+    }
+
+    fn graph(&self, scene: &SceneId) -> Result<Arc<ViewpointGraph>, PlatformError> {
+        self.platform.graph(scene)
+    }
+
+    fn sample_path(&self, scene: &SceneId, request: &PathRequest, seed: u64) -> Result<Path, PlatformError> {
+        self.platform.sample_path(scene, request, seed)
+    }
+
+    fn look(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        if !self.has_pictures {
+            return self.labels(scene, from, gaze);
+        }
+        let key = key(scene, from, gaze);
+        if let Some(view) = self.remembered(&key) {
+            return Ok(view);
+        }
+        let view = self.platform.look(scene, from, gaze)?;
+        self.remember(key, &view);
+        Ok(view)
+    }
+
+    fn look_without_picture(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<View, PlatformError> {
+        if !self.has_pictures {
+            return self.labels(scene, from, gaze);
+        }
+        let key = key(scene, from, gaze);
+        if let Some(view) = self.remembered(&key) {
+            return Ok(view);
+        }
+        let view = self.platform.look_without_picture(scene, from, gaze)?;
+        // A view with its picture is complete.
+        if view.image.is_some() {
+            self.remember(key, &view);
+        }
+        Ok(view)
+    }
+
+    /// Depth is not cached: it is larger than a picture, and asked for once.
+    fn depth(&self, scene: &SceneId, from: &Frame, gaze: Gaze) -> Result<Option<Depth>, PlatformError> {
+        self.platform.depth(scene, from, gaze)
+    }
+
+    fn look_down(&self, scene: &SceneId, level: u32) -> Result<Option<FromAbove>, PlatformError> {
+        self.platform.look_down(scene, level)
+    }
+
+    fn object_name(&self, scene: &SceneId, near: &Frame, object: &ObjectId) -> Result<Option<String>, PlatformError> {
+        self.platform.object_name(scene, near, object)
+    }
+
+    fn visible_from(&self, scene: &SceneId, object: &ObjectId) -> Result<Option<BTreeSet<ViewpointId>>, PlatformError> {
+        self.platform.visible_from(scene, object)
+    }
+
+    fn way(&self, scene: &SceneId, from: &Frame, to: &Frame) -> Result<Option<Way>, PlatformError> {
+        self.platform.way(scene, from, to)
+    }
+
+    fn islands(&self, scene: &SceneId) -> Result<Vec<Island>, PlatformError> {
+        self.platform.islands(scene)
+    }
+
+    fn listed_objects(&self, scene: &SceneId) -> Result<Vec<Placed>, PlatformError> {
+        self.platform.listed_objects(scene)
+    }
+
+    fn lists_everything(&self) -> bool {
+        self.platform.lists_everything()
+    }
+
+    fn scene_file(&self, scene: &SceneId) -> Result<Option<PathBuf>, PlatformError> {
+        self.platform.scene_file(scene)
+    }
+
+    fn files(&self, scene: &SceneId) -> Result<Vec<PathBuf>, PlatformError> {
+        self.platform.files(scene)
+    }
+}

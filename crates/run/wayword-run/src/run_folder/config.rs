@@ -1,0 +1,169 @@
+//! `config.toml` of a folder: the settings of its run, comparison or robustness test, with the format of the folder. The same
+//! file decides whether a command continues the folder or is refused.
+
+use super::{file, write_whole};
+use crate::{
+    error::Error,
+    own_format::{self, OwnFormat},
+    settings::Settings,
+    text_file,
+};
+use serde::Serialize;
+use std::{collections::BTreeSet, path::Path};
+
+/// Writes the settings into a new folder. In an old one, refuses settings that differ from those of the file.
+pub fn keep_config<S>(folder: &Path, settings: &S) -> Result<(), Error>
+where
+    S: Serialize + OwnFormat + PartialEq,
+{
+    let path = folder.join(file::CONFIG);
+    if !path.exists() {
+        return write_config(&path, settings);
+    }
+    let before: S = config_of(folder)?;
+    if before == *settings { Ok(()) } else { Err(other_settings(folder, &before, settings)) }
+}
+
+fn other_settings<S: Serialize>(folder: &Path, before: &S, settings: &S) -> Error {
+    let differs = differing(before, settings).into_iter().collect::<Vec<_>>().join(", ");
+    let problem = format!("{} holds a run with other settings: {differs}", folder.display());
+    let config = folder.join(file::CONFIG);
+    Error::usage(
+        problem,
+        format!(
+            "to continue it, give the old settings and input files again ({} has the settings); for a new run, another --out",
+            config.display()
+        ),
+    )
+}
+
+/// As [`keep_config`] for a run. Its number of paths or items may grow.
+pub(super) fn keep_settings(folder: &Path, settings: &Settings) -> Result<(), Error> {
+    let path = folder.join(file::CONFIG);
+    if !path.exists() {
+        return keep_config(folder, settings);
+    }
+    let before: Settings = config_of(folder)?;
+    if settings.paths < before.paths {
+        let problem =
+            format!("{} holds a run of {} paths, but {} are asked for", folder.display(), before.paths, settings.paths);
+        return Err(Error::usage(
+            problem,
+            "ask for as many or more to continue it, or give another --out for a new run",
+        ));
+    }
+    if before.raised_to(settings) != *settings {
+        return Err(other_settings(folder, &before, settings));
+    }
+    if before == *settings { Ok(()) } else { write_config(&path, settings) }
+}
+
+fn write_config<S: Serialize + OwnFormat>(path: &Path, settings: &S) -> Result<(), Error> {
+    write_whole(path, &config_text(settings)?)
+}
+
+/// Settings as `config.toml` has them.
+///
+/// # Errors
+/// When they cannot be written as TOML.
+pub fn config_text<S: Serialize + OwnFormat>(settings: &S) -> Result<String, Error> {
+    let text = toml::to_string_pretty(settings)
+        .map_err(|error| Error::usage(format!("the settings cannot be written: {error}"), "report this as a bug"))?;
+    Ok(own_format::headed::<S>(&text))
+}
+
+/// Refuses a folder with a run in chunks that are not merged yet, because the files of the whole run are missing.
+///
+/// # Errors
+/// When the run is not merged.
+pub fn refuse_unmerged(folder: &Path) -> Result<(), Error> {
+    if !is_begun(folder) && folder.join(wayword_queue::PLAN).exists() {
+        return Err(Error::usage(
+            format!("{}: this run lies in chunks", folder.display()),
+            format!("put them together first: wayword runs merge {}", folder.display()),
+        ));
+    }
+    Ok(())
+}
+
+/// Whether a folder holds a run, finished or not.
+#[must_use]
+pub fn is_begun(folder: &Path) -> bool {
+    folder.join(file::CONFIG).exists()
+}
+
+/// The settings with which the run of a folder is continued: the new ones, with the scenes that it left out at first, and the
+/// earlier numbers of paths.
+///
+/// # Errors
+/// When the folder's settings cannot be read.
+pub fn continued(folder: &Path, settings: &Settings) -> Result<Settings, Error> {
+    if !is_begun(folder) {
+        return Ok(settings.clone());
+    }
+    let Settings { raised_from, left_out, .. } = config_of::<Settings>(folder)?.raised_to(settings);
+    Ok(Settings { raised_from, left_out, ..settings.clone() })
+}
+
+/// The settings of a run.
+///
+/// # Errors
+/// When the folder is not a run folder.
+pub fn settings_of(folder: &Path) -> Result<Settings, Error> {
+    refuse_unmerged(folder)?;
+    config_of(folder)
+}
+
+/// The table in `config.toml` of a folder, whatever its format.
+pub fn table_of(folder: &Path) -> Result<toml::Table, Error> {
+    let path = folder.join(file::CONFIG);
+    let text = text_file::read(&path, "read the folder's settings")?;
+    toml::from_str(&text).map_err(|error| {
+        let problem = format!("{}: {}", path.display(), error.to_string().trim());
+        Error::usage(problem, "it was changed by hand or by another program: use another folder")
+    })
+}
+
+/// Refuses a folder of another format before one of its other files is read. A folder without settings passes.
+///
+/// # Errors
+/// When `config.toml` cannot be read or names another format.
+pub fn refuse_other_format<S: OwnFormat>(folder: &Path) -> Result<(), Error> {
+    let path = folder.join(file::CONFIG);
+    refuse_unmerged(folder)?;
+    if !path.exists() {
+        return Ok(());
+    }
+    let text = text_file::read(&path, "read the folder's settings")?;
+    own_format::check::<S>(&text).map_err(|unread| {
+        let hint = unread.hint("it was changed by hand or by another program: use another folder");
+        Error::usage(format!("{}: {unread}", path.display()), hint)
+    })
+}
+
+/// Reads `config.toml` of a folder.
+pub fn config_of<S: OwnFormat>(folder: &Path) -> Result<S, Error> {
+    let path = folder.join(file::CONFIG);
+    let text = text_file::read(&path, "read the run's settings")?;
+    own_format::read(&text).map_err(|unread| {
+        let hint = unread.hint("it was written by another command or another version: use another folder");
+        Error::usage(format!("{}: {unread}", path.display()), hint)
+    })
+}
+
+/// The keys in which two settings differ. Inputs that differ are listed as "contents of NAME".
+pub fn differing<S: Serialize>(a: &S, b: &S) -> BTreeSet<String> {
+    let table = |settings: &S| toml::Table::try_from(settings).unwrap_or_default();
+    let (a, b) = (table(a), table(b));
+    let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+    let differs = |key: &&String| a.get(*key) != b.get(*key);
+    let contents = |name: &String| {
+        let (before, after) = (a.get("inputs")?.get(name)?, b.get("inputs")?.get(name)?);
+        (before != after).then(|| format!("contents of {name}"))
+    };
+    let inputs = a.get("inputs").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
+    let inputs: Vec<String> = inputs.filter_map(contents).collect();
+    let settings =
+        keys.into_iter().filter(differs).filter(|key| !["inputs", "raised_from"].contains(&key.as_str())).cloned();
+    settings.chain(inputs).collect()
+}

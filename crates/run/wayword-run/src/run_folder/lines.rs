@@ -1,0 +1,104 @@
+//! Reads the files of a run line by line, so that a long run needs no more memory than a short one.
+
+use crate::error::Error;
+use serde::de::DeserializeOwned;
+use std::{
+    fmt::Display,
+    fs::{self, File},
+    io::{BufRead, BufReader, Read},
+    path::Path,
+};
+
+/// Longest line that is read, bytes.
+const MOST_LINE_BYTES: usize = 16 << 20;
+
+/// A whole line of a file.
+pub struct Line<'a> {
+    path: &'a Path,
+    number: usize,
+    bytes: &'a [u8],
+}
+
+/// Hands every whole line of a file to `take`. A missing file counts as empty. An incomplete last line is left out, because a
+/// stopped run will write it again.
+///
+/// # Errors
+/// When the file cannot be read, a line is too long, or `take` fails.
+pub fn each(path: &Path, mut take: impl FnMut(Line<'_>) -> Result<(), Error>) -> Result<(), Error> {
+    if !fs::exists(path).map_err(Error::io(path, "look for"))? {
+        return Ok(());
+    }
+    let mut reader = BufReader::new(File::open(path).map_err(Error::io(path, "open"))?);
+    let mut bytes = Vec::new();
+    for number in 1.. {
+        bytes.clear();
+        let most = MOST_LINE_BYTES as u64 + 1;
+        reader.by_ref().take(most).read_until(b'\n', &mut bytes).map_err(Error::io(path, "read"))?;
+        let line = Line { path, number, bytes: &bytes };
+        if bytes.len() > MOST_LINE_BYTES {
+            return Err(line.broken(format_args!("it is longer than {} MiB", MOST_LINE_BYTES >> 20)));
+        }
+        if bytes.last() != Some(&b'\n') {
+            break;
+        }
+        take(line)?;
+    }
+    Ok(())
+}
+
+impl Line<'_> {
+    /// Its length, bytes.
+    pub fn len(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// The value that the line holds.
+    ///
+    /// # Errors
+    /// When the value is not of that kind.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, Error> {
+        serde_json::from_slice(self.bytes).map_err(|error| {
+            let told = error.to_string();
+            let problem = told.rsplit_once(" at line ").map_or(told.as_str(), |(problem, _)| problem);
+            self.broken(format_args!("column {}: {problem}", error.column()))
+        })
+    }
+
+    /// The error about a line with wrong content.
+    pub fn broken(&self, problem: impl Display) -> Error {
+        let problem = format!("{}: line {}: {problem}", self.path.display(), self.number);
+        Error::usage(problem, "the file was changed by hand or by another program: give another --out for a new run")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(text: &str) -> Result<Vec<u32>, Error> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.jsonl");
+        fs::write(&path, text).unwrap();
+        let mut numbers = Vec::new();
+        each(&path, |line| {
+            numbers.push(line.parse()?);
+            Ok(())
+        })?;
+        Ok(numbers)
+    }
+
+    #[test]
+    fn a_torn_last_line_is_left_out() {
+        assert_eq!(numbers("1\n2\n3").unwrap(), [1, 2]);
+    }
+
+    #[test]
+    fn parse_reports_a_broken_line_with_its_number() {
+        assert!(numbers("1\nx\n3\n").unwrap_err().to_string().contains("line 2"));
+    }
+
+    #[test]
+    fn a_line_without_end_is_refused() {
+        assert!(numbers(&" ".repeat(MOST_LINE_BYTES + 1)).unwrap_err().to_string().contains("longer than"));
+    }
+}

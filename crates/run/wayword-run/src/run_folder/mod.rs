@@ -1,0 +1,298 @@
+//! The run folder: the settings of a run, and its results so far.
+//!
+//! It holds `config.toml` (the settings as resolved), `walks.jsonl` (paths, captions and dialogues),
+//! `instructions.jsonl` (Wayword records), `rejected.jsonl` (texts that failed a check, with reasons), `errors.jsonl`
+//! (items that failed; the next command tries them again), `data.json` (hashes of the scenes' files) and `frames/`. A
+//! process that is killed leaves at most one incomplete last line in each file; the next process cuts it off and goes
+//! on where the first stopped. At the end the lines are sorted, so the files are the same byte for byte however often
+//! the run was stopped.
+
+mod config;
+mod held;
+mod journal;
+pub mod lines;
+mod record;
+mod world_data;
+
+use crate::{error::Error, item::Item, pictures, settings::Settings, text_file};
+use serde::{Deserialize, de::IgnoredAny};
+use sha2::{Digest, Sha256};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs::{self, File},
+    io::Write,
+    path::{Path, PathBuf},
+    time::SystemTime,
+};
+use wayword_world::files;
+
+use config::keep_settings;
+pub use config::{config_of, config_text, differing, keep_config, refuse_other_format, refuse_unmerged, table_of};
+pub use config::{continued, is_begun, settings_of};
+pub use held::{Held, hold};
+pub use journal::{Journal, read_lines};
+pub use record::{FailedItem, Map, Rejected, WalkRecord, extra, name_of_text, text_name};
+pub use world_data::WorldData;
+pub(crate) use world_data::hashes;
+
+/// A run folder in which only this process works.
+#[derive(Debug)]
+pub struct RunFolder {
+    folder: PathBuf,
+    /// Paths and captions, one line per item.
+    pub walks: Journal,
+    /// Accepted instructions, one line each.
+    pub instructions: Journal,
+    /// Texts that failed their checks.
+    pub rejected: Journal,
+    /// Items that failed. Each command empties it at the start, and tries them again.
+    pub errors: Journal,
+    /// Items that failed in the command before this one.
+    failed_before: BTreeSet<String>,
+    /// Items that have a line in `walks.jsonl`, but not all the pictures that belong to it.
+    without_pictures: BTreeSet<String>,
+    /// Keeps other processes out for as long as this lives.
+    _held: Option<Held>,
+}
+
+/// Names of the files in a run folder.
+pub mod file {
+    /// The settings as resolved.
+    pub const CONFIG: &str = "config.toml";
+    /// Paths and captions.
+    pub const WALKS: &str = "walks.jsonl";
+    /// Accepted instructions.
+    pub const INSTRUCTIONS: &str = "instructions.jsonl";
+    /// Rejected ones.
+    pub const REJECTED: &str = "rejected.jsonl";
+    /// Items that failed, to be tried again.
+    pub const ERRORS: &str = "errors.jsonl";
+    /// The name under which the ledger keeps the run's spending.
+    pub const ID: &str = "run.id";
+    /// Hashes of the files that scenes are read from.
+    pub const DATA: &str = "data.json";
+    /// Pictures of frames.
+    pub const FRAMES: &str = "frames";
+    /// The report.
+    pub const REPORT: &str = "report.html";
+    /// Locked by the process that works in the folder.
+    pub const LOCK: &str = "run.lock";
+    /// Names the process at work in the folder, on network file systems, where locks are not reliable.
+    pub const OWNER: &str = "run.owner";
+}
+
+impl RunFolder {
+    /// Opens a run folder for work: makes it, or continues the run in it.
+    ///
+    /// # Errors
+    /// When another process works in it or may do, it holds a run with other settings, or it cannot be written.
+    pub fn open(folder: &Path, settings: &Settings) -> Result<Self, Error> {
+        fs::create_dir_all(folder).map_err(Error::io(folder, "make the run folder"))?;
+        let held = hold(folder)?;
+        Self::of(folder, settings, Some(held))
+    }
+
+    /// Opens the folder of a chunk. It is not locked, because only one worker knows its name, and because locks are not reliable
+    /// on network file systems.
+    ///
+    /// # Errors
+    /// When it holds a run with other settings, or it cannot be written.
+    pub(crate) fn of_worker(folder: &Path, settings: &Settings) -> Result<Self, Error> {
+        fs::create_dir_all(folder).map_err(Error::io(folder, "make the chunk's folder"))?;
+        Self::of(folder, settings, None)
+    }
+
+    fn of(folder: &Path, settings: &Settings, held: Option<Held>) -> Result<Self, Error> {
+        keep_settings(folder, settings)?;
+        let walks = folder.join(file::WALKS);
+        Ok(Self {
+            failed_before: keys_of(&folder.join(file::ERRORS))?,
+            without_pictures: without_pictures(&walks, &folder.join(file::FRAMES))?,
+            walks: Journal::open(&walks, WalkRecord::key_of)?,
+            instructions: Journal::open(&folder.join(file::INSTRUCTIONS), record::instruction_key)?,
+            rejected: Journal::open(&folder.join(file::REJECTED), Rejected::key_of)?,
+            errors: Journal::begin(&folder.join(file::ERRORS), FailedItem::key_of)?,
+            folder: folder.to_owned(),
+            _held: held,
+        })
+    }
+
+    /// Where pictures of frames go.
+    #[must_use]
+    pub fn frames(&self) -> PathBuf {
+        self.folder.join(file::FRAMES)
+    }
+
+    /// Whether an item needs no more work: its path and pictures are there, and each text ([`text_name`]) has its line.
+    #[must_use]
+    fn is_done(&self, item: &str, styles: &[String]) -> bool {
+        let has = |style: &str| {
+            let key = record::key(item, style);
+            self.instructions.has(&key) || self.rejected.has(&key)
+        };
+        self.walks.has(item) && !self.without_pictures.contains(item) && styles.iter().all(|style| has(style))
+    }
+
+    /// The items that need more work. Those that failed last time come last, so that they do not hold up the others.
+    #[must_use]
+    pub fn left<'a>(&self, items: &'a [Item], styles: &[String]) -> Vec<&'a Item> {
+        let left = items.iter().filter(|item| !self.is_done(&item.id(), styles));
+        let (failed, mut left): (Vec<&Item>, Vec<&Item>) =
+            left.partition(|item| self.failed_before.contains(&item.id()));
+        left.extend(failed);
+        left
+    }
+
+    /// Sorts the lines of all files by item and style. Without this, an item that failed at first and was made later would come
+    /// after its successors.
+    ///
+    /// # Errors
+    /// When a file cannot be read or written.
+    pub fn arrange<'a>(&mut self, items: impl Iterator<Item = &'a Item>, styles: &[String]) -> Result<(), Error> {
+        let places: BTreeMap<String, usize> = items.enumerate().map(|(place, item)| (item.id(), place)).collect();
+        let place = |key: &str| {
+            let (item, style) = record::parts(key);
+            // An item that is not among these stays, at the end.
+            let item = places.get(item).copied().unwrap_or(places.len());
+            match style {
+                None => Some(item),
+                // A rejection of a whole item, as older versions wrote it. This version has tried the item again.
+                Some("") => None,
+                Some(style) => {
+                    let style = styles.iter().position(|other| other == style).unwrap_or(styles.len());
+                    Some(item * (styles.len() + 1) + style)
+                }
+            }
+        };
+        self.walks.arrange(place)?;
+        self.instructions.arrange(place)?;
+        self.rejected.arrange(place)
+    }
+
+    /// Flushes all files to the disk, so that they survive a crash of the machine.
+    ///
+    /// # Errors
+    /// When a file cannot be flushed.
+    pub fn sync(&mut self) -> Result<(), Error> {
+        self.walks.sync()?;
+        self.instructions.sync()?;
+        self.rejected.sync()?;
+        self.errors.sync()
+    }
+}
+
+/// Refuses a run folder that is a file, before models are loaded.
+///
+/// # Errors
+/// When it is a file.
+pub fn refuse_file(folder: &Path) -> Result<(), Error> {
+    if !folder.exists() || folder.is_dir() {
+        return Ok(());
+    }
+    Err(Error::io(folder, "make the folder")(std::io::ErrorKind::NotADirectory.into()))
+}
+
+/// The name under which the ledger keeps a folder's spending: the one that the folder keeps, else a new one. This function does
+/// not write it, so that models can be loaded before the folder is made; [`keep_id`] does. A new run in place of a deleted one
+/// has another name, so it starts without spending.
+///
+/// # Errors
+/// When it cannot be read.
+pub fn id_of(folder: &Path, kind: &str) -> Result<String, Error> {
+    Ok(kept_id(folder)?.unwrap_or_else(|| fresh_id(kind)))
+}
+
+/// Keeps in a folder the name under which the ledger keeps its spending.
+///
+/// # Errors
+/// When it cannot be read or written, or another process has kept its own since [`id_of`] gave this one.
+pub fn keep_id(folder: &Path, id: &str) -> Result<(), Error> {
+    match kept_id(folder)? {
+        None => write_whole(&folder.join(file::ID), id),
+        Some(kept) if kept == id => Ok(()),
+        Some(_) => Err(Error::Busy(folder.to_owned())),
+    }
+}
+
+fn kept_id(folder: &Path) -> Result<Option<String>, Error> {
+    let path = folder.join(file::ID);
+    let read = || text_file::read(&path, "read the run's name");
+    if path.exists() { Ok(Some(read()?.trim().to_owned())) } else { Ok(None) }
+}
+
+/// The items in `errors.jsonl`.
+fn keys_of(errors: &Path) -> Result<BTreeSet<String>, Error> {
+    let mut keys = BTreeSet::new();
+    lines::each(errors, |line| {
+        keys.extend(FailedItem::key_of(&line.parse()?));
+        Ok(())
+    })?;
+    Ok(keys)
+}
+
+/// The items with missing pictures.
+fn without_pictures(walks: &Path, frames: &Path) -> Result<BTreeSet<String>, Error> {
+    let mut without = BTreeSet::new();
+    lines::each(walks, |line| {
+        let Pictured { path: PicturedPath { id, frames: of_path }, has_pictures } = line.parse()?;
+        let is_there =
+            |frame: usize| fs::metadata(pictures::file(frames, &id, frame)).is_ok_and(|metadata| metadata.len() > 0);
+        if has_pictures && !(0..of_path.len()).all(is_there) {
+            without.insert(id);
+        }
+        Ok(())
+    })?;
+    Ok(without)
+}
+
+/// The fields of a line of `walks.jsonl` from which the expected pictures follow.
+#[derive(Deserialize)]
+struct Pictured {
+    path: PicturedPath,
+    has_pictures: bool,
+}
+
+#[derive(Deserialize)]
+struct PicturedPath {
+    id: String,
+    frames: Vec<IgnoredAny>,
+}
+
+/// A name that no other process makes: kind, time and process.
+#[must_use]
+pub fn fresh_id(kind: &str) -> String {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    format!("{kind}-{:x}-{:x}", since.as_micros(), std::process::id())
+}
+
+/// Writes a small file so that it is whole or absent, whenever the process is killed.
+pub fn write_whole(path: &Path, text: &str) -> Result<(), Error> {
+    let mut temporary = path.as_os_str().to_owned();
+    temporary.push(".new");
+    let temporary = PathBuf::from(temporary);
+    let write = || {
+        let mut file = File::create(&temporary)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_data()
+    };
+    write().map_err(Error::io(&temporary, "write"))?;
+    fs::rename(&temporary, path).map_err(Error::io(path, "write"))
+}
+
+/// The beginning of the hash of an input file.
+pub fn hash_of_file(file: &Path) -> Result<String, Error> {
+    // Reading a pipe would wait for ever.
+    let about = fs::metadata(file).map_err(Error::io(file, "read"))?;
+    if let Some(reason) = files::irregular(&about) {
+        return Err(Error::usage(format!("{}: it {reason}", file.display()), "name a file"));
+    }
+    let mut hash = Sha256::new();
+    let copied = File::open(file).and_then(|mut file| std::io::copy(&mut file, &mut hash));
+    copied.map_err(Error::io(file, "read"))?;
+    Ok(short_hex(hash))
+}
+
+/// The first eight bytes of a hash, as text.
+pub fn short_hex(hash: Sha256) -> String {
+    hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}

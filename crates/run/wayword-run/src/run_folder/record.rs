@@ -1,0 +1,183 @@
+//! The records of a run folder: a type for a line of each of its files, and the keys that identify the lines.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map as JsonMap, Value};
+use wayword_core::{DVec3, Failure, Instruction, Observation, Path, Platform, PlatformError, ViewpointGraph};
+use wayword_formats::jsonl::Record;
+
+/// A path and what was seen along it: a line of `walks.jsonl`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct WalkRecord {
+    /// Name of the platform.
+    pub platform: String,
+    /// The path.
+    pub path: Path,
+    /// One per frame.
+    pub observations: Vec<Observation>,
+    /// Instructions by people for the same path, if the episodes have any.
+    pub originals: Vec<String>,
+    /// The viewpoint graph around the path.
+    pub map: Map,
+    /// Whether `frames/` holds pictures of the frames, named ITEM_FRAME.jpg.
+    pub has_pictures: bool,
+}
+
+/// The viewpoint graph around a path, from above.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Map {
+    /// Positions of nodes: x and y, metres, world frame.
+    pub nodes: Vec<[f64; 2]>,
+    /// Pairs of nodes.
+    pub edges: Vec<[usize; 2]>,
+}
+
+/// How far from the path the map reaches, metres.
+const MAP_MARGIN_M: f64 = 4.0;
+/// Nodes that are higher or lower than the path by more than this belong to other storeys, metres.
+const MAP_HEIGHT_M: f64 = 1.6;
+
+/// A text that failed its checks: a line of `rejected.jsonl`.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Rejected {
+    /// The item.
+    pub item: String,
+    /// The style.
+    pub style: String,
+    /// Why.
+    pub reason: String,
+    /// The best text there was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last: Option<Instruction>,
+    /// Its number among the texts of its path and style, from 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub number: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_zero(number: &usize) -> bool {
+    *number == 0
+}
+
+/// An item that failed: a line of `errors.jsonl`. The same command tries it again.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct FailedItem {
+    /// The item.
+    pub item: String,
+    /// The kind of failure. Older versions wrote no kind, and kept only failures of models.
+    #[serde(default = "lost")]
+    pub failure: Failure,
+    /// The message of the error.
+    pub reason: String,
+}
+
+fn lost() -> Failure {
+    Failure::Lost
+}
+
+/// The name of a line: an item and a style.
+pub(super) fn key(item: &str, style: &str) -> String {
+    format!("{item}\u{1f}{style}")
+}
+
+/// Identifies a text within its item: its style, and its number where the style has several.
+#[must_use]
+pub fn text_name(style: &str, number: usize) -> String {
+    if number == 0 { style.to_owned() } else { format!("{style}\u{1f}{number}") }
+}
+
+/// The field of a record that has the number of its text.
+const NUMBER: &str = "number";
+
+/// Identifies the text of a record within its item, as a part of file names: its style, and its number where the style has
+/// several.
+#[must_use]
+pub fn name_of_text(record: &Record) -> String {
+    let style = &record.instruction.style;
+    match record.extra.get(NUMBER).and_then(Value::as_u64) {
+        Some(number) if number > 0 => format!("{style}-{number}"),
+        _ => style.clone(),
+    }
+}
+
+fn name_of(value: &Value) -> Option<String> {
+    let number = value.get(NUMBER).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
+    Some(text_name(value.get("style")?.as_str()?, number.unwrap_or(0)))
+}
+
+pub(super) fn instruction_key(value: &Value) -> Option<String> {
+    Some(key(value.get("path")?.get("id")?.as_str()?, &name_of(value)?))
+}
+
+/// The item of a key, and the name of its text if it has one.
+pub(super) fn parts(key: &str) -> (&str, Option<&str>) {
+    key.split_once('\u{1f}').map_or((key, None), |(item, style)| (item, Some(style)))
+}
+
+impl FailedItem {
+    pub fn key_of(value: &Value) -> Option<String> {
+        Some(value.get("item")?.as_str()?.to_owned())
+    }
+}
+
+impl WalkRecord {
+    pub(super) fn key_of(value: &Value) -> Option<String> {
+        Some(value.get("path")?.get("id")?.as_str()?.to_owned())
+    }
+}
+
+impl Rejected {
+    pub(super) fn key_of(value: &Value) -> Option<String> {
+        Some(key(value.get("item")?.as_str()?, &name_of(value)?))
+    }
+}
+
+/// The additional fields of an instruction's record: the path in its dataset, and the number of the text where its path and
+/// style have several.
+#[must_use]
+pub fn extra(path_id: &str, number: usize) -> JsonMap<String, Value> {
+    let mut extra = JsonMap::new();
+    extra.insert("path_id".to_owned(), path_id.into());
+    if number > 0 {
+        extra.insert(NUMBER.to_owned(), number.into());
+    }
+    extra
+}
+
+impl Map {
+    /// The graph around a path; empty if the path has no poses.
+    ///
+    /// # Errors
+    /// When the platform cannot give it.
+    pub fn around(path: &Path, platform: &dyn Platform) -> Result<Self, PlatformError> {
+        if !path.motion.is_known() {
+            return Ok(Self::default());
+        }
+        let stops: Vec<DVec3> = path.frames.iter().map(|frame| frame.pose.position).collect();
+        Ok(Self::near(&stops, &*platform.graph(&path.scene)?))
+    }
+
+    /// A graph around some places, on their storeys.
+    #[must_use]
+    pub fn near(stops: &[DVec3], graph: &ViewpointGraph) -> Self {
+        let near = |position: DVec3| {
+            stops.iter().any(|stop| {
+                let off = *stop - position;
+                off.truncate().length() <= MAP_MARGIN_M && off.z.abs() <= MAP_HEIGHT_M
+            })
+        };
+        let mut map = Self::default();
+        let mut places = std::collections::BTreeMap::new();
+        for (id, position) in
+            graph.viewpoints().filter_map(|id| Some((id, graph.position(id)?))).filter(|(_, position)| near(*position))
+        {
+            places.insert(id, map.nodes.len());
+            map.nodes.push([centimetres(position.x), centimetres(position.y)]);
+        }
+        map.edges = graph.edges().filter_map(|(a, b, _)| Some([*places.get(a)?, *places.get(b)?])).collect();
+        map
+    }
+}
+
+fn centimetres(metres: f64) -> f64 {
+    (metres * 100.0).round() / 100.0
+}

@@ -1,0 +1,469 @@
+//! Settings of a run: flags and a TOML file, resolved once into [`Settings`], which the run folder keeps.
+
+mod asked;
+mod roles;
+mod service;
+mod sources;
+
+use crate::{calls::Keeping, error::Error};
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::BTreeMap,
+    ops::RangeInclusive,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
+use wayword_core::{Lack, PathRequest};
+use wayword_synthesis::{
+    dialogue::{Mode, QUESTIONS},
+    walk::FrameSelection,
+};
+
+pub use asked::{Asked, AskedPlatform, Draw, Frames, Walks, Writing};
+pub use roles::{AskedRoles, Finish, LABELS, Precision, RULES, Roles, can_play, is_in_process, is_model};
+pub use service::{Providers, Service};
+pub use sources::Sources;
+
+/// The resolved settings of a run. They decide its results, so a run cannot be continued with others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Name of the platform: see `wayword platforms`.
+    pub platform: String,
+    /// Folder of the platform's data.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data: Option<PathBuf>,
+    /// Address of a running simulator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<String>,
+    /// The island of a Habitat navmesh that paths are taken on; chosen by the platform if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub island: Option<usize>,
+    /// Folder of the viewpoint graphs along which Habitat's scenes are walked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub connectivity: Option<PathBuf>,
+    /// Dataset file that the paths are taken from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub episodes: Option<PathBuf>,
+    /// Number of random paths; 0 with episodes.
+    pub paths: usize,
+    /// Numbers of random paths that earlier commands asked for, ascending: later paths come after theirs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub raised_from: Vec<usize>,
+    /// Scenes to use; none means all.
+    pub scan: Vec<String>,
+    /// The lengths that random paths may have.
+    pub request: PathRequest,
+    /// Style names, files, or NAME=DATASET.
+    pub style: Vec<String>,
+    /// Which views are captioned.
+    pub frames: FrameSelection,
+    /// Dialogue or fixed queries.
+    pub perception: Perception,
+    /// Most questions of a dialogue.
+    pub questions: usize,
+    /// Whether the object of the closing task is given.
+    pub target: TargetMode,
+    /// How often a text that failed a check is written again.
+    pub repairs: u32,
+    /// How many texts are written, of which one is kept.
+    #[serde(default = "one")]
+    pub candidates: u32,
+    /// How many texts each path gets in each style.
+    #[serde(default = "one_text", skip_serializing_if = "is_one")]
+    pub per_path: usize,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Only this many items.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit: Option<usize>,
+    /// The sources of evidence that texts are checked against.
+    #[serde(default)]
+    pub evidence: Sources,
+    /// The file with the measured figures of the detector.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detector_figures: Option<PathBuf>,
+    /// The names that the detector looks for in every view: none (`off`), or those of a file; `None` for the built-in names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proposals: Option<PathBuf>,
+    /// A calibration from the user's own data: how far labels can be trusted for single names of objects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<PathBuf>,
+    /// Whether a text that may mean several places or objects fails.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub reject_ambiguous: bool,
+    /// Whether no text is followed.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub no_route: bool,
+    /// Who asks, sees, summarises and writes.
+    #[serde(default)]
+    pub roles: Roles,
+    /// Hashes of the files and styles that the run began with, by name. A run is not continued with others.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, String>,
+    /// The scenes that the run leaves out because they could not be used when it began, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub left_out: BTreeMap<String, Lack>,
+}
+
+fn one() -> u32 {
+    1
+}
+
+fn one_text() -> usize {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_one(number: &usize) -> bool {
+    *number == 1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+fn is_false(flag: &bool) -> bool {
+    !*flag
+}
+
+/// How views are described.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Perception {
+    /// One request for everything in a view, as JSON with the model's confidence in each thing. The default for models behind
+    /// HTTP.
+    Structured,
+    /// The same, then questions about everything that it left open: the room, and what is only perhaps there. They are asked at
+    /// the same time.
+    FollowUp,
+    /// Question by question, then a summary. The default for labels and for models in process.
+    #[default]
+    Dialogue,
+    /// Fixed queries for objects and room, without a dialogue: the paper's ablation.
+    Fixed,
+    /// One request for a description. The answer is the caption.
+    Single,
+}
+
+impl Perception {
+    /// Whether it asks for JSON, which only a model that follows instructions gives.
+    #[must_use]
+    pub fn is_structured(self) -> bool {
+        matches!(self, Self::Structured | Self::FollowUp)
+    }
+
+    /// The default for this model, or for labels.
+    fn of(see: &str) -> Self {
+        if is_model(see) && !is_in_process(see) { Self::Structured } else { Self::Dialogue }
+    }
+}
+
+/// Who chooses the object of the closing task.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum TargetMode {
+    /// The target of the episode or of the random path, named to the writer.
+    #[default]
+    Given,
+    /// Chosen by the writer from the things in the last frame. Exports then have no object id.
+    Free,
+}
+
+/// Default number of random paths, without episodes.
+const PATHS: usize = 10;
+/// Default of how often a text that failed is written again.
+const REPAIRS: u32 = 8;
+/// The same if a model writes, because each repair costs a call.
+const REPAIRS_OF_MODELS: u32 = 3;
+/// Default of how many texts are written, of which one is kept. If a model writes, it is 1, because each costs a call.
+const CANDIDATES: u32 = 4;
+/// Largest `--candidates`.
+const MOST_CANDIDATES: u32 = 32;
+/// Largest `--repairs`.
+const MOST_REPAIRS: u32 = 100;
+/// Largest `--questions`: each question carries the whole dialogue before it.
+const MOST_QUESTIONS: usize = 100;
+/// Largest `--per-path`: later texts of a path differ ever less from the earlier ones.
+const MOST_PER_PATH: usize = 9;
+/// Largest `--paths`.
+const MOST_PATHS: usize = 1_000_000;
+
+/// The settings of a run, and how it may reach models.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Job {
+    /// The resolved settings.
+    pub settings: Settings,
+    /// How models are reached, and how much may be spent.
+    pub service: Service,
+    /// The user's own providers.
+    pub providers: Providers,
+    /// Which ledger keeps the calls.
+    pub keeping: Keeping,
+}
+
+impl Asked {
+    /// Resolves it, together with how models are reached.
+    ///
+    /// # Errors
+    /// When a range cannot be read, a number is out of range, or two settings exclude each other.
+    pub fn job(mut self) -> Result<Job, Error> {
+        let service = std::mem::take(&mut self.service).checked()?;
+        let providers = std::mem::take(&mut self.providers);
+        let settings = self.resolve()?;
+        for (flag, path) in [
+            ("--data", &settings.data),
+            ("--connectivity", &settings.connectivity),
+            ("--episodes", &settings.episodes),
+            ("--calibration", &settings.calibration),
+            ("--detector-figures", &settings.detector_figures),
+            ("--proposals", &settings.proposals),
+            ("--prompts", &settings.roles.prompts),
+        ] {
+            nameable(flag, path.as_deref())?;
+        }
+        Ok(Job { settings, service, providers, keeping: Keeping::Machine })
+    }
+
+    /// Resolves these settings. Values that were not given get their defaults.
+    ///
+    /// # Errors
+    /// When a range cannot be read, or two settings exclude each other.
+    pub fn resolve(self) -> Result<Settings, Error> {
+        let Self { platform, walks, writing, draw, roles, .. } = self;
+        let paths = walks.paths.unwrap_or(if walks.episodes.is_some() { 0 } else { PATHS });
+        if walks.episodes.is_some() && paths > 0 {
+            return Err(Error::usage("--episodes and --paths cannot be combined", "give one of them"));
+        }
+        if walks.paths == Some(0) {
+            return Err(Error::usage("--paths 0 asks for no path", "give at least 1, or leave the flag out for 10"));
+        }
+        if draw.limit == Some(0) {
+            return Err(Error::usage("--limit 0 leaves no item", "give at least 1, or leave the flag out for all"));
+        }
+        if paths > MOST_PATHS {
+            return Err(Error::usage(
+                format!("--paths {paths} is more than {MOST_PATHS}"),
+                "make several runs, each with its own --seed",
+            ));
+        }
+        if writing.reject_ambiguous == Some(true) && writing.no_route == Some(true) {
+            return Err(Error::usage(
+                "--reject-ambiguous and --no-route cannot be combined: a text that is not followed is not known to be ambiguous",
+                "give one of them",
+            ));
+        }
+        if writing.repairs.is_some_and(|repairs| repairs > MOST_REPAIRS) {
+            return Err(Error::usage(
+                format!("--repairs is more than {MOST_REPAIRS}"),
+                "give fewer: a text that fails that often will not pass later",
+            ));
+        }
+        if writing.candidates.is_some_and(|candidates| !(1..=MOST_CANDIDATES).contains(&candidates)) {
+            return Err(Error::usage(
+                format!("--candidates is not from 1 to {MOST_CANDIDATES}"),
+                "give a number in that range: each further text gains less",
+            ));
+        }
+        if writing.per_path.is_some_and(|number| !(1..=MOST_PER_PATH).contains(&number)) {
+            return Err(Error::usage(
+                format!("--per-path is not from 1 to {MOST_PER_PATH}"),
+                "for more texts make several runs, each with its own --seed",
+            ));
+        }
+        if writing.questions.is_some_and(|questions| questions > MOST_QUESTIONS) {
+            return Err(Error::usage(
+                format!("--questions is more than {MOST_QUESTIONS}"),
+                "give fewer: after about nine questions a dialogue brings little that is new",
+            ));
+        }
+        let request = request(walks.hops.as_deref(), walks.metres.as_deref())?;
+        let roles = roles.resolve()?;
+        let (repairs, candidates) = if is_model(&roles.write) { (REPAIRS_OF_MODELS, 1) } else { (REPAIRS, CANDIDATES) };
+        let perception = writing.perception.unwrap_or_else(|| Perception::of(&roles.see));
+        let evidence = evidence(&writing, &roles)?;
+        let styles = writing.style.filter(|styles| !styles.is_empty());
+        Ok(Settings {
+            platform: platform.name().to_owned(),
+            data: platform.data,
+            at: platform.at,
+            island: platform.island,
+            connectivity: platform.connectivity,
+            episodes: walks.episodes,
+            paths,
+            raised_from: Vec::new(),
+            scan: walks.scan.unwrap_or_default(),
+            request,
+            style: styles.unwrap_or_else(|| vec!["r2r".into(), "reverie".into()]),
+            frames: writing.frames.map(FrameSelection::from).unwrap_or_default(),
+            perception,
+            questions: writing.questions.unwrap_or(QUESTIONS),
+            target: writing.target.unwrap_or_default(),
+            repairs: writing.repairs.unwrap_or(repairs),
+            candidates: writing.candidates.unwrap_or(candidates),
+            per_path: writing.per_path.unwrap_or(1),
+            seed: draw.seed.unwrap_or(0),
+            limit: draw.limit,
+            evidence,
+            detector_figures: writing.detector_figures,
+            proposals: writing.proposals,
+            calibration: writing.calibration,
+            reject_ambiguous: writing.reject_ambiguous.unwrap_or(false),
+            no_route: writing.no_route.unwrap_or(false),
+            roles,
+            inputs: BTreeMap::new(),
+            left_out: BTreeMap::new(),
+        })
+    }
+}
+
+/// Resolves the sources of evidence. Refuses settings for a detector if there is none.
+fn evidence(writing: &Writing, roles: &Roles) -> Result<Sources, Error> {
+    let evidence = writing.evidence.unwrap_or_else(|| Sources::usual(roles.detector.is_some()));
+    let without = [
+        ("--evidence detector", evidence.detector),
+        ("--detector-figures", writing.detector_figures.is_some()),
+        ("--proposals", writing.proposals.is_some()),
+    ];
+    match without.iter().find(|(_, is_asked)| *is_asked && roles.detector.is_none()) {
+        Some((flag, _)) => Err(Error::usage(
+            format!("{flag} has no effect without a detector"),
+            "name one, as in --detector hf/google/owlv2-base-patch16-ensemble, or leave it out",
+        )),
+        None => Ok(evidence),
+    }
+}
+
+/// Refuses a path that a run folder cannot keep: settings are UTF-8 text, and a file's name need not be.
+pub fn nameable(flag: &str, path: Option<&Path>) -> Result<(), Error> {
+    match path {
+        Some(path) if path.to_str().is_none() => Err(Error::usage(
+            format!("{flag} {}: this name is not valid UTF-8, and a run keeps it as text", path.display()),
+            "rename it, or make a symbolic link to it with a plain name and give that",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// The lengths that random paths may have.
+fn request(hops: Option<&str>, metres: Option<&str>) -> Result<PathRequest, Error> {
+    let default = PathRequest::default();
+    let length_m: RangeInclusive<f64> = metres.map_or(Ok(default.length_m), |text| range("--metres", text))?;
+    if !length_m.end().is_finite() {
+        return Err(Error::usage("--metres must be finite", "write it as in --metres 5..20"));
+    }
+    let hops = hops.map_or(Ok(default.hops), |text| range("--hops", text))?;
+    if *hops.end() == 0 {
+        return Err(Error::usage("--hops 0: a path has at least 1 hop", "write it as in --hops 4..7"));
+    }
+    if *length_m.end() <= 0.0 {
+        return Err(Error::usage(
+            format!("--metres {}: a path is longer than 0", metres.unwrap_or_default()),
+            "write it as in --metres 5..20",
+        ));
+    }
+    Ok(PathRequest { hops, length_m })
+}
+
+impl Settings {
+    /// Whether there is a dialogue.
+    #[must_use]
+    pub fn has_dialogue(&self) -> bool {
+        self.perception == Perception::Dialogue
+    }
+
+    /// These settings with the numbers of paths and items of others, if those are larger.
+    #[must_use]
+    pub fn raised_to(&self, other: &Self) -> Self {
+        let mut raised = self.clone();
+        if other.paths > self.paths && self.paths > 0 {
+            raised.paths = other.paths;
+            raised.raised_from.push(self.paths);
+        }
+        let grows = |before: usize| other.limit.is_none_or(|limit| limit > before);
+        if self.limit.is_some_and(grows) {
+            raised.limit = other.limit;
+        }
+        raised
+    }
+
+    /// How views are described.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        match self.perception {
+            Perception::Dialogue => Mode::Dialogue { questions: self.questions },
+            Perception::Fixed => Mode::Fixed,
+            Perception::Single => Mode::Single,
+            Perception::Structured => Mode::Structured { questions: 0 },
+            Perception::FollowUp => Mode::Structured { questions: self.questions },
+        }
+    }
+}
+
+/// A range as typed: "4..7", both ends included, or one number.
+fn range<N: FromStr + PartialOrd + Copy>(flag: &str, text: &str) -> Result<RangeInclusive<N>, Error> {
+    let (from, to) = text.split_once("..").unwrap_or((text, text));
+    let parsed = from.trim().parse::<N>().ok().zip(to.trim_start_matches('=').trim().parse::<N>().ok());
+    let problem = match parsed {
+        Some((from, to)) if from <= to => return Ok(from..=to),
+        Some((from, to)) if from > to => "the first number is larger than the second",
+        _ => "this is not a range",
+    };
+    Err(Error::usage(
+        format!("{flag} {text}: {problem}"),
+        format!("write it as in {flag} 4..7, the smaller number first"),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resolve_prefers_flags_to_the_file_and_the_file_to_defaults() {
+        let flags = Asked { draw: Draw { seed: Some(7), ..Draw::default() }, ..Asked::default() };
+        let file: Asked = toml::from_str("seed = 1\nrepairs = 2\nhops = \"2..3\"").unwrap();
+        let settings = flags.or(file).resolve().unwrap();
+        assert_eq!(
+            (settings.seed, settings.repairs, settings.request.hops, settings.questions),
+            (7, 2, 2..=3, QUESTIONS)
+        );
+    }
+
+    #[test]
+    fn ranges_are_read_or_refused() {
+        assert_eq!(range::<usize>("--hops", "4..7").unwrap(), 4..=7);
+        assert_eq!(range::<f64>("--metres", "5").unwrap(), 5.0..=5.0);
+        for bad in ["7..4", "x", "", "1..", "NaN..3"] {
+            assert!(range::<f64>("--metres", bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn ranges_that_no_path_fits_are_refused() {
+        let told = |hops, metres| request(hops, metres).unwrap_err().to_string();
+        assert!(told(Some("9..3"), None).contains("first number is larger"));
+        assert!(told(Some("9-3"), None).contains("not a range"));
+        assert!(told(None, Some("20..5")).contains("--metres 20..5"));
+        assert!(told(Some("0"), None).contains("--hops 0"));
+        assert!(told(None, Some("-3..0")).contains("--metres -3..0"));
+        assert!(request(Some("0..3"), Some("0..5")).is_ok());
+    }
+
+    #[test]
+    fn lengths_are_finite() {
+        let asked = |text: &str| request(None, Some(text));
+        assert!(asked("5..1e400").is_err() && asked("5..20").is_ok());
+    }
+
+    #[test]
+    fn dialogues_are_bounded() {
+        let asked = |questions| {
+            Asked { writing: Writing { questions: Some(questions), ..Writing::default() }, ..Asked::default() }
+                .resolve()
+        };
+        assert!(asked(MOST_QUESTIONS).is_ok() && asked(MOST_QUESTIONS + 1).is_err() && asked(usize::MAX).is_err());
+    }
+
+    #[test]
+    fn a_misspelt_key_of_the_file_is_refused() {
+        assert!(toml::from_str::<Asked>("sed = 1").is_err());
+    }
+}

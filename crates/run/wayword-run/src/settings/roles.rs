@@ -1,0 +1,289 @@
+//! The roles of a run: which model, or labels or rules, asks, sees, summarises and writes.
+
+use super::{asked::group, is_false};
+use crate::error::Error;
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The name of the role that answers from ground-truth labels.
+pub const LABELS: &str = "labels";
+/// The name of a role that works by rules.
+pub const RULES: &str = "rules";
+
+/// Default for the longer side of the pictures that models are sent, pixels.
+const PICTURE_PX: u32 = 512;
+/// Largest `--picture-px`.
+const MOST_PICTURE_PX: u32 = 4096;
+
+group! {
+    /// Who plays which role in a run: flags, and the table `[roles]` of a settings file.
+    #[derive(Debug, Clone, Default, PartialEq, Args, Deserialize)]
+    #[serde(deny_unknown_fields, default)]
+    #[command(next_help_heading = "Roles")]
+    pub struct AskedRoles {
+        /// Language model that asks, summarises and writes, as provider/model.
+        #[arg(long, value_name = "MODEL")]
+        pub llm: Option<String>,
+        /// Who asks about the views: rules, or a model. [default: the model of --llm, else rules]
+        #[arg(long, value_name = "MODEL")]
+        pub ask: Option<String>,
+        /// Who sees: labels (the platform's ground-truth labels answer), or a model that looks at pictures. [default: labels]
+        #[arg(long, value_name = "MODEL")]
+        pub see: Option<String>,
+        /// Who summarises the answers: rules, or a model. [default: the model of --llm, else rules]
+        #[arg(long, value_name = "MODEL")]
+        pub summarise: Option<String>,
+        /// Who writes: rules, or a model. [default: the model of --llm, else rules]
+        #[arg(long, value_name = "MODEL")]
+        pub write: Option<String>,
+        /// Detector that looks for things in the pictures, as hf/ORG/NAME: what it finds is seen, and a thing that captions name
+        /// and it misses is doubted. It runs inside this program.
+        #[arg(long, value_name = "MODEL")]
+        pub detector: Option<String>,
+        /// Show the model that writes the pictures ahead of the frames, at most 16 of a path, in addition to their descriptions:
+        /// as in --write openai/gpt-4.1-mini --write-sees. A provider that takes no pictures is refused.
+        #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+        pub write_sees: Option<bool>,
+        /// What happens if all texts of the model failed a check: rules write the instruction, or with `nobody` it is rejected. The
+        /// provenance names the writer. [default: rules]
+        #[arg(long)]
+        pub finish: Option<Finish>,
+        /// Base URL of the provider. For several providers use [providers.NAME] in the settings file.
+        #[arg(long, value_name = "URL")]
+        pub base_url: Option<String>,
+        /// Longer side of the pictures that models get; larger pictures are shrunk. [default: 512]
+        #[arg(long, value_name = "PX")]
+        pub picture_px: Option<u32>,
+        /// Number format of the weights of a model that runs inside this program: f32, bf16 or f16. [default: f32; for BLIP-2, bf16]
+        #[arg(long, value_name = "NUMBERS")]
+        pub precision: Option<Precision>,
+        /// Folder with your own prompt templates: question.j2, answer.j2, answer_question.j2 (BLIP), answer_completion.j2 (BLIP-2),
+        /// summary.j2, condense.j2, write.j2.
+        #[arg(long, value_name = "DIR")]
+        pub prompts: Option<PathBuf>,
+    }
+}
+
+/// Number format of a model's weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 32 bits.
+    F32,
+    /// 16 bits, with the range of f32.
+    Bf16,
+    /// 16 bits.
+    F16,
+}
+
+/// Who finishes if all of a model's texts failed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Finish {
+    /// The writer that works by rules finishes.
+    #[default]
+    Rules,
+    /// The instruction is rejected.
+    Nobody,
+}
+
+/// Who plays which role in a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Roles {
+    /// Who asks.
+    pub ask: String,
+    /// Who sees.
+    pub see: String,
+    /// Who summarises.
+    pub summarise: String,
+    /// Who writes.
+    pub write: String,
+    /// The detector that looks for things in the pictures; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detector: Option<String>,
+    /// Whether the model that writes is shown the pictures of the frames.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub write_sees: bool,
+    /// Who finishes if all texts of a model failed.
+    pub finish: Finish,
+    /// Base URL, if there is one provider.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base_url: Option<String>,
+    /// Longer side of the pictures that models are sent.
+    pub picture_px: u32,
+    /// Number format of the weights of models in process, if not the default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub precision: Option<Precision>,
+    /// Folder of prompt templates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prompts: Option<PathBuf>,
+}
+
+impl Default for Roles {
+    fn default() -> Self {
+        Self {
+            ask: RULES.to_owned(),
+            see: LABELS.to_owned(),
+            summarise: RULES.to_owned(),
+            write: RULES.to_owned(),
+            detector: None,
+            write_sees: false,
+            finish: Finish::default(),
+            base_url: None,
+            picture_px: PICTURE_PX,
+            precision: None,
+            prompts: None,
+        }
+    }
+}
+
+impl AskedRoles {
+    /// The values of flags, completed by those of a file. A flag `--llm` wins over the file's text roles.
+    #[must_use]
+    pub fn or(self, mut file: Self) -> Self {
+        if self.llm.is_some() {
+            file = Self { ask: None, summarise: None, write: None, ..file };
+        }
+        self.over(file)
+    }
+
+    /// Resolves the roles. Values that were not given get their defaults.
+    ///
+    /// # Errors
+    /// When a name is neither built in nor provider/model.
+    pub fn resolve(self) -> Result<Roles, Error> {
+        let default = Roles::default();
+        let text = |role: Option<String>, flag, none: &str| match (role, &self.llm) {
+            (Some(name), _) => named(flag, name, RULES),
+            (None, Some(name)) => named("--llm", name.clone(), RULES),
+            (None, None) => Ok(none.to_owned()),
+        };
+        let picture_px = self.picture_px.unwrap_or(default.picture_px);
+        if !(32..=MOST_PICTURE_PX).contains(&picture_px) {
+            return Err(Error::usage(
+                format!("--picture-px {picture_px} is not from 32 to {MOST_PICTURE_PX}"),
+                "most models look at 300 to 1600 pixels",
+            ));
+        }
+        let write = text(self.write, "--write", &default.write)?;
+        let write_sees = self.write_sees.unwrap_or(false);
+        if write_sees && (!is_model(&write) || is_in_process(&write)) {
+            return Err(Error::usage(
+                format!("--write-sees: {write} writes, and cannot be shown pictures"),
+                "name a model over HTTP that sees, as in --write openai/gpt-4.1-mini --write-sees",
+            ));
+        }
+        Ok(Roles {
+            ask: text(self.ask, "--ask", &default.ask)?,
+            see: self.see.map_or(Ok(default.see), |name| named("--see", name, LABELS))?,
+            summarise: text(self.summarise, "--summarise", &default.summarise)?,
+            write,
+            detector: self.detector.map(detects).transpose()?,
+            write_sees,
+            finish: self.finish.unwrap_or_default(),
+            base_url: self.base_url,
+            picture_px,
+            precision: self.precision,
+            prompts: self.prompts,
+        })
+    }
+}
+
+/// Checks the name of a role's player: `rules` or `labels`, or provider/model.
+fn named(flag: &str, name: String, embedded: &str) -> Result<String, Error> {
+    if can_play(&name, embedded) {
+        return Ok(name);
+    }
+    Err(Error::usage(
+        format!("{flag} {name}: this is neither `{embedded}` nor a model as provider/model"),
+        format!("give {embedded}, or a provider and its model, as in {flag} ollama/llava"),
+    ))
+}
+
+/// Checks the name of a detector.
+fn detects(name: String) -> Result<String, Error> {
+    if is_in_process(&name) {
+        return Ok(name);
+    }
+    Err(Error::usage(
+        format!("--detector {name}: detectors run inside this program, and their names begin with hf/"),
+        "give one as in --detector hf/google/owlv2-base-patch16-ensemble",
+    ))
+}
+
+/// Whether a role can have that name: `rules` or `labels`, or provider/model.
+#[must_use]
+pub fn can_play(name: &str, embedded: &str) -> bool {
+    let is_model = |(provider, model): (&str, &str)| !provider.is_empty() && !model.is_empty();
+    name == embedded || name.split_once('/').is_some_and(is_model)
+}
+
+impl Roles {
+    /// The models among them, each once, in the order of their work.
+    #[must_use]
+    pub fn models(&self) -> Vec<&str> {
+        let mut models: Vec<&str> = Vec::new();
+        for name in [&self.ask, &self.see, &self.summarise, &self.write].into_iter().chain(&self.detector) {
+            if is_model(name) && !models.contains(&name.as_str()) {
+                models.push(name);
+            }
+        }
+        models
+    }
+
+    /// The models over HTTP that are shown pictures, each once.
+    #[must_use]
+    pub fn shown_pictures(&self) -> Vec<&str> {
+        let writer = Some(&self.write).filter(|name| self.write_sees && **name != self.see);
+        let shown = std::iter::once(&self.see).chain(writer).map(String::as_str);
+        shown.filter(|name| is_model(name) && !is_in_process(name)).collect()
+    }
+}
+
+/// Whether a model runs in process: its name begins with `hf/`.
+#[must_use]
+pub fn is_in_process(name: &str) -> bool {
+    name.starts_with("hf/")
+}
+
+/// Whether a role is played by a model.
+#[must_use]
+pub fn is_model(name: &str) -> bool {
+    name.contains('/')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(llm: Option<&str>, write: Option<&str>) -> AskedRoles {
+        AskedRoles { llm: llm.map(str::to_owned), write: write.map(str::to_owned), ..AskedRoles::default() }
+    }
+
+    #[test]
+    fn one_model_takes_the_three_text_roles_unless_one_is_named() {
+        let roles = asked(Some("a/b"), Some("c/d:e")).resolve().unwrap();
+        assert_eq!((&*roles.ask, &*roles.see, &*roles.summarise, &*roles.write), ("a/b", "labels", "a/b", "c/d:e"));
+        assert_eq!(roles.models(), ["a/b", "c/d:e"]);
+        assert_eq!(AskedRoles::default().resolve().unwrap(), Roles::default());
+    }
+
+    #[test]
+    fn a_flag_for_all_roles_wins_over_the_roles_of_the_file() {
+        let roles = asked(Some("a/b"), None).or(asked(None, Some("c/d"))).resolve().unwrap();
+        assert_eq!(roles.write, "a/b");
+        let roles = asked(None, None).or(asked(Some("e/f"), Some("c/d"))).resolve().unwrap();
+        assert_eq!((&*roles.ask, &*roles.write), ("e/f", "c/d"));
+    }
+
+    #[test]
+    fn names_that_no_role_can_have_are_refused() {
+        for bad in ["labels", "gpt", "/x", "x/", ""] {
+            let told = |llm, write| asked(llm, write).resolve().unwrap_err().to_string();
+            assert!(told(None, Some(bad)).starts_with("--write"), "{bad}");
+            assert!(told(Some(bad), None).starts_with("--llm"), "{bad}: the error names the flag that was given");
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The sources of evidence that texts are checked against, with their text form in flags and settings:
+//! `labels,captions,detector`.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::{fmt, str::FromStr};
+
+/// The sources of evidence that texts are checked against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sources {
+    /// The platform's labels, where it has them. The other sources are not used then.
+    pub labels: bool,
+    /// The captions, where labels are not used.
+    pub captions: bool,
+    /// The finds and misses of a detector, where labels are not used.
+    pub detector: bool,
+}
+
+impl Sources {
+    /// The captions alone, as on a platform without labels.
+    pub const CAPTIONS: Self = Self { labels: false, captions: true, detector: false };
+
+    /// Labels where there are any, else captions; and the detector, where there is one.
+    #[must_use]
+    pub fn usual(has_detector: bool) -> Self {
+        Self { labels: true, captions: true, detector: has_detector }
+    }
+
+    fn named(&self) -> Vec<&'static str> {
+        // `labels` alone implies captions where there are no labels, so they need not be named.
+        let captions = self.captions && (!self.labels || self.detector);
+        let all = [(self.labels, "labels"), (captions, "captions"), (self.detector, "detector")];
+        all.into_iter().filter(|(is_used, _)| *is_used).map(|(_, name)| name).collect()
+    }
+}
+
+impl Default for Sources {
+    fn default() -> Self {
+        Self::usual(false)
+    }
+}
+
+impl fmt::Display for Sources {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.named().join(","))
+    }
+}
+
+impl FromStr for Sources {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let mut sources = Self { labels: false, captions: false, detector: false };
+        for name in text.split(',').map(str::trim) {
+            let source = match name {
+                "labels" => &mut sources.labels,
+                "captions" => &mut sources.captions,
+                "detector" => &mut sources.detector,
+                _ => return Err(format!("{name:?} is none of labels, captions, detector")),
+            };
+            *source = true;
+        }
+        // `labels` alone falls back to captions on platforms without labels.
+        sources.captions |= sources.labels && !sources.detector;
+        Ok(sources)
+    }
+}
+
+impl Serialize for Sources {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Sources {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        String::deserialize(from)?.parse().map_err(de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sources_are_kept_as_they_are_typed() {
+        for text in
+            ["labels", "captions", "detector", "labels,captions,detector", "captions,detector", "labels,detector"]
+        {
+            assert_eq!(text.parse::<Sources>().unwrap().to_string(), text);
+        }
+        assert_eq!("labels".parse(), Ok(Sources::default()));
+        assert_eq!("labels, captions".parse(), Ok(Sources::default()));
+        assert!("label".parse::<Sources>().is_err() && "".parse::<Sources>().is_err());
+    }
+}

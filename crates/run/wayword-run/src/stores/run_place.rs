@@ -1,0 +1,151 @@
+//! The place of a run that many workers make: a folder that all of them share, or an object store.
+
+use super::{StoredRun, address};
+use crate::{error::Error, output::Output, run_folder::is_begun};
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+use wayword_queue::{Board, PLAN, Plan, QueueError, WAY, worker_name};
+
+/// The place of a run.
+pub struct RunPlace {
+    /// The folder or address that the user gave.
+    named: PathBuf,
+    /// The folder in which this process works. For a run in an object store this is a folder of this process alone.
+    folder: PathBuf,
+    stored: Option<StoredRun>,
+}
+
+impl RunPlace {
+    /// Opens the place that the user gave. A run in an object store gets a folder for temporary files, which is removed at the
+    /// end.
+    ///
+    /// # Errors
+    /// When the address cannot be used, or this build cannot reach object stores.
+    pub fn of(named: &Path) -> Result<Self, Error> {
+        let Some(address) = address(named) else {
+            return Ok(Self { named: named.to_owned(), folder: named.to_owned(), stored: None });
+        };
+        let folder = std::env::temp_dir().join(format!("wayword-{}", worker_name()));
+        own_folder(&folder).map_err(Error::io(&folder, "make a folder for temporary files"))?;
+        let stored = StoredRun::open(address, &folder)?;
+        let place = Self { named: named.to_owned(), folder, stored: Some(stored) };
+        place.with(|stored| {
+            stored.fetch_file(PLAN)?;
+            stored.fetch_file(WAY)
+        })?;
+        Ok(place)
+    }
+
+    /// Fetches a run from an object store into a folder that stays. The file about how chunks are handed out is not fetched,
+    /// because workers continue in the store and not in this folder.
+    ///
+    /// # Errors
+    /// When the place is a folder already, the folder has another run, or the run cannot be fetched.
+    pub fn fetch(named: &Path, to: &Path, output: &Output) -> Result<(), Error> {
+        let Some(address) = address(named) else {
+            return Err(Error::usage(
+                "--to is for a run in an object store",
+                "leave it out: a run in a folder is merged there",
+            ));
+        };
+        if is_begun(to) && Plan::find(to)?.is_none() {
+            let problem = format!("{} holds a run that one machine makes", to.display());
+            return Err(Error::usage(problem, "give another folder"));
+        }
+        let stored = StoredRun::open(address, to)?;
+        let bar = output.progress(0, "chunks");
+        stored.fetch(&|done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        })?;
+        bar.finish_and_clear();
+        Ok(())
+    }
+
+    /// The folder in which this process works.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The place as the user named it, for messages.
+    pub fn named(&self) -> &Path {
+        &self.named
+    }
+
+    /// Whether the run is in an object store.
+    pub fn is_stored(&self) -> bool {
+        self.stored.is_some()
+    }
+
+    fn with(&self, work: impl FnOnce(&StoredRun) -> Result<(), QueueError>) -> Result<(), Error> {
+        Ok(self.stored.as_ref().map_or(Ok(()), work)?)
+    }
+
+    /// Tests that the store lets exactly one of several concurrent writers create a file.
+    ///
+    /// # Errors
+    /// When it does not, or cannot be used.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        self.with(StoredRun::check)
+    }
+
+    /// Sends a file that must be the same for all workers (the plan, or how chunks are handed out). If another worker has sent
+    /// its own already, that one counts, and replaces the file of this folder.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub(crate) fn publish(&self, file: &str) -> Result<(), Error> {
+        self.with(|stored| stored.publish(file))
+    }
+
+    /// Fetches the marks of finished chunks, in place of those of this folder.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub fn fetch_marks(&self, plan: &Plan) -> Result<(), Error> {
+        self.with(|stored| stored.fetch_marks(plan))
+    }
+
+    /// Sends the marks that killed workers of a queue did not send.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub(crate) fn send_marks(&self, plan: &Plan) -> Result<(), Error> {
+        self.with(|stored| stored.send_marks(plan))
+    }
+
+    /// Removes marks of chunks that are to be made again.
+    ///
+    /// # Errors
+    /// When the store cannot be used.
+    pub fn reopen(&self, chunks: &[usize]) -> Result<(), Error> {
+        self.with(|stored| chunks.iter().try_for_each(|chunk| stored.reopen(*chunk)))
+    }
+
+    /// Runs `work` with a board. If the run is in an object store, each chunk is sent before the board marks it as finished.
+    pub(crate) fn sending<T>(&self, board: &dyn Board, work: impl FnOnce(&dyn Board) -> T) -> T {
+        match &self.stored {
+            None => work(board),
+            Some(stored) => work(&stored.sending(board)),
+        }
+    }
+}
+
+/// Makes a folder that only this user can read. Fails if it exists.
+fn own_folder(folder: &Path) -> io::Result<()> {
+    let mut builder = fs::DirBuilder::new();
+    #[cfg(unix)]
+    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+    builder.create(folder)
+}
+
+impl Drop for RunPlace {
+    fn drop(&mut self) {
+        if self.is_stored() {
+            // The system empties the folder of temporary files sooner or later.
+            let _ = fs::remove_dir_all(&self.folder);
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! `wayword completions`: prints the completion script for a shell.
+
+use crate::cli::Cli;
+use clap::CommandFactory;
+use std::io::{self, Write};
+use wayword_run::error::{Error, Exit};
+
+pub fn run(shell: clap_complete::Shell) -> Result<Exit, Error> {
+    // `clap_complete` panics when it cannot write. A closed pipe is not an error.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "wayword", &mut script);
+    let _ = io::stdout().write_all(&script);
+    Ok(Exit::Done)
+}

@@ -1,0 +1,20 @@
+//! `wayword platforms`: lists the platforms, with the data that each needs and offers.
+
+use std::fmt::Write as _;
+use wayword_run::{
+    error::{Error, Exit},
+    output::Output,
+    platforms::PLATFORMS,
+};
+
+pub fn run(output: &Output) -> Result<Exit, Error> {
+    let mut text = String::new();
+    for platform in PLATFORMS {
+        let absent = if platform.is_here { "" } else { " (not in this build: --features full)" };
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{}{absent}: {}", platform.name, platform.what);
+        let _ = writeln!(text, "    needs:  {}\n    offers: {}", platform.needs, platform.offers);
+    }
+    output.data(&PLATFORMS, text);
+    Ok(Exit::Done)
+}

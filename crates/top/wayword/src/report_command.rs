@@ -1,0 +1,87 @@
+//! `wayword report`.
+
+use clap::Args;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+use wayword_experiments::compare;
+use wayword_report::pages as report;
+use wayword_run::{
+    error::{Error, Exit},
+    output::Output,
+    run_folder::{file, refuse_unmerged},
+};
+
+/// `wayword report`.
+#[derive(Debug, Args)]
+#[command(
+    after_long_help = "Examples:\n  wayword report --run runs/val_seen\n  wayword report --run runs/val_seen --items 20 --out page.html"
+)]
+pub struct Report {
+    /// Run folder, or the folder of a comparison.
+    #[arg(long, value_name = "DIR")]
+    pub run: PathBuf,
+    /// Show at most this many items, those with rejected and unverified texts first. For a comparison: this many walks, with
+    /// successes and failures of each agent and set. [default: 1000; for a comparison 100]
+    #[arg(long, value_name = "N")]
+    pub items: Option<usize>,
+    /// HTML file to write. With more than 50 items it is an overview, and the items are on numbered pages in the same folder.
+    /// [default: report.html in the run folder]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// Items of a run that are shown, unless `--items` gives another number.
+const ITEMS: usize = 1000;
+/// Walks of a comparison that are shown, unless `--items` gives another number.
+const WALKS: usize = 100;
+/// Most runs below a folder that an error names.
+const NAMED: usize = 3;
+
+pub fn run(args: &Report, output: &Output) -> Result<Exit, Error> {
+    expect_run(&args.run)?;
+    let out = args.out.clone().unwrap_or_else(|| args.run.join(file::REPORT));
+    if compare::is_comparison(&args.run) {
+        let written = compare::write_of_folder(&args.run, &out, args.items.unwrap_or(WALKS))?;
+        output.data(&written, &written);
+        return Ok(Exit::Done);
+    }
+    let written = report::write(&args.run, &out, args.items.unwrap_or(ITEMS))?;
+    output.data(&written, &written);
+    Ok(Exit::Done)
+}
+
+/// Refuses a path that is not a run folder, and names the one that the user may mean.
+fn expect_run(folder: &Path) -> Result<(), Error> {
+    if is_run(folder) {
+        return Ok(());
+    }
+    refuse_unmerged(folder)?;
+    let name = folder.display();
+    let around = folder.parent().filter(|around| folder.is_file() && is_run(around));
+    let within = runs_within(folder);
+    let what = match (fs::exists(folder), folder.is_dir()) {
+        (Ok(false), _) => "there is no such folder".to_owned(),
+        (_, true) => format!("it is not a run folder, because it holds no {}", file::CONFIG),
+        _ => "it is a file, not a run folder".to_owned(),
+    };
+    let hint = match around {
+        Some(around) => format!("give the folder that it is in: --run {}", around.display()),
+        None if !within.is_empty() => format!("name one of the runs in it: --run {}", within.join(", --run ")),
+        None => "give the --out folder of a `wayword generate` or `wayword compare`".to_owned(),
+    };
+    Err(Error::usage(format!("--run {name}: {what}"), hint))
+}
+
+fn is_run(folder: &Path) -> bool {
+    folder.join(file::CONFIG).is_file()
+}
+
+/// The first runs directly below a folder, by name.
+fn runs_within(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut runs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_run(path)).collect();
+    runs.sort();
+    runs.iter().take(NAMED).map(|run| run.display().to_string()).collect()
+}

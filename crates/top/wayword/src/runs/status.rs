@@ -1,0 +1,250 @@
+//! `wayword runs status`: how far a run of many workers is.
+
+use super::prometheus;
+use crate::runs::args::{RunsQueue, RunsStatus};
+use serde::Serialize;
+use std::{
+    collections::BTreeMap,
+    fmt,
+    path::Path,
+    thread,
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
+use wayword_queue::{Alive, Done, FRESH, Plan, beats, dead_of, done_of};
+use wayword_run::{
+    count::count,
+    error::{Error, Exit},
+    generate::Way,
+    interrupt,
+    output::Output,
+    stores::RunPlace,
+};
+
+/// How often the status is shown again.
+const EVERY: Duration = Duration::from_secs(5);
+/// The pace is measured over this many seconds before now.
+const WINDOW_S: u64 = 600;
+/// How many slow chunks and reasons are shown.
+const FEW: usize = 5;
+
+/// The queue of a build without one.
+#[cfg(not(feature = "queue"))]
+pub(super) enum NoQueue {}
+
+/// The queue of a run; `None` if its workers have fixed parts, or none has begun.
+#[cfg(feature = "queue")]
+pub(super) fn queue_of(
+    place: &RunPlace,
+    plan: &Plan,
+    asked: &RunsQueue,
+) -> Result<Option<wayword_queue::Queue>, Error> {
+    let Some(Way::Queue(name)) = Way::of(place.folder())? else { return Ok(None) };
+    // The file in a store could be forged, and must not choose which server gets the user's password.
+    if place.is_stored() && asked.queue.as_ref() != Some(&name) {
+        return Err(Error::usage(
+            format!("{}: its workers use the queue {name}", place.named().display()),
+            format!("if you know it, give --queue {name}"),
+        ));
+    }
+    let database = wayword_database::Database::named(&name, asked.password_env.as_deref())?;
+    Ok(Some(wayword_queue::Queue::open(database, place.folder(), plan)?))
+}
+
+/// As above, in a build without databases: a run with a queue is an error.
+#[cfg(not(feature = "queue"))]
+pub(super) fn queue_of(place: &RunPlace, _: &Plan, _: &RunsQueue) -> Result<Option<NoQueue>, Error> {
+    match Way::of(place.folder())? {
+        Some(Way::Queue(name)) => {
+            Err(Error::not_built(format!("the queue {name} cannot be used: this build has no way to a database")))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// How far a run is.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Status {
+    pub(super) run: String,
+    pub(super) items: usize,
+    /// Items of finished chunks.
+    pub(super) items_done: usize,
+    pub(super) chunks: usize,
+    pub(super) done: usize,
+    pub(super) running: usize,
+    pub(super) open: usize,
+    /// Chunks that were given up, with the reason.
+    pub(super) dead: BTreeMap<usize, String>,
+    pub(super) written: usize,
+    pub(super) rejected: usize,
+    /// Items that failed, by reason.
+    pub(super) failed: BTreeMap<String, usize>,
+    /// How often chunks were begun again, by reason.
+    pub(super) retries: BTreeMap<String, i64>,
+    /// The cost of the calls of finished chunks, US dollars.
+    pub(super) usd: f64,
+    pub(super) items_per_minute: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) minutes_left: Option<f64>,
+    /// The chunks that took longest, in seconds.
+    pub(super) slowest: Vec<(usize, f64)>,
+    pub(super) workers: Vec<AtWork>,
+}
+
+/// A worker.
+#[derive(Debug, Serialize)]
+pub(super) struct AtWork {
+    pub(super) worker: String,
+    /// Its part, or the chunk that it has.
+    pub(super) has: String,
+    /// Seconds since its last sign of life.
+    pub(super) beat_s: f64,
+    /// Whether that is recent enough to count.
+    pub(super) is_fresh: bool,
+}
+
+pub fn run(args: &RunsStatus, output: &Output) -> Result<Exit, Error> {
+    let place = RunPlace::of(&args.run)?;
+    let (folder, plan) = (place.folder(), Plan::of(place.folder())?);
+    let queue = queue_of(&place, &plan, &args.database)?;
+    loop {
+        place.fetch_marks(&plan)?;
+        let mut status = Status { run: args.run.display().to_string(), ..Status::of(folder, &plan)? };
+        #[cfg(feature = "queue")]
+        if let Some(queue) = &queue {
+            status.add(queue.look()?);
+        }
+        #[cfg(not(feature = "queue"))]
+        let _ = &queue;
+        status.workers.sort_by(|a, b| a.worker.cmp(&b.worker));
+        if args.prometheus {
+            output.data(&status, prometheus::text(&status));
+        } else {
+            output.data(&status, &status);
+        }
+        if !args.watch || status.open + status.running == 0 {
+            return Ok(Exit::Done);
+        }
+        thread::sleep(EVERY);
+        interrupt::check()?;
+    }
+}
+
+impl Status {
+    /// The status according to the files in the folder.
+    fn of(folder: &Path, plan: &Plan) -> Result<Self, Error> {
+        let mut status = Self { items: plan.items.len(), chunks: plan.chunks(), ..Self::default() };
+        let mut done = Vec::new();
+        for chunk in 0..plan.chunks() {
+            if let Some(one) = done_of(folder, chunk)? {
+                status.items_done += plan.range(chunk).len();
+                status.count(&one);
+                done.push(one);
+            } else if let Some(reason) = dead_of(folder, chunk)? {
+                status.dead.insert(chunk, reason);
+            }
+        }
+        status.done = done.len();
+        status.workers = beats(folder)?.into_iter().map(AtWork::from).collect();
+        status.running = status.workers.iter().filter(|worker| worker.is_fresh).count();
+        status.running = status.running.min(status.chunks - status.done - status.dead.len());
+        status.open = status.chunks - status.done - status.running - status.dead.len();
+        status.pace(plan, &done);
+        done.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
+        status.slowest = done.iter().take(FEW).map(|one| (one.chunk, one.seconds)).collect();
+        Ok(status)
+    }
+
+    fn count(&mut self, done: &Done) {
+        self.written += done.written;
+        self.rejected += done.rejected;
+        self.usd += done.usd;
+        for (reason, times) in &done.failed {
+            *self.failed.entry(reason.clone()).or_default() += times;
+        }
+    }
+
+    /// Items a minute over the last ten minutes, and how long the rest takes at that pace.
+    fn pace(&mut self, plan: &Plan, done: &[Done]) {
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+        let recent: Vec<&Done> = done.iter().filter(|one| one.at_unix_s + WINDOW_S >= now).collect();
+        let begun = |one: &&Done| one.at_unix_s.saturating_sub(one.seconds as u64);
+        let Some(first) = recent.iter().map(begun).min() else { return };
+        let minutes = now.saturating_sub(first.max(now.saturating_sub(WINDOW_S))).max(1) as f64 / 60.0;
+        let items: usize = recent.iter().map(|one| plan.range(one.chunk).len()).sum();
+        self.items_per_minute = items as f64 / minutes;
+        let dead: usize = self.dead.keys().map(|chunk| plan.range(*chunk).len()).sum();
+        let left = self.items.saturating_sub(self.items_done + dead);
+        self.minutes_left = (left > 0 && self.items_per_minute > 0.0).then(|| left as f64 / self.items_per_minute);
+    }
+
+    /// Adds the more exact numbers of the queue.
+    #[cfg(feature = "queue")]
+    fn add(&mut self, seen: wayword_queue::Seen) {
+        (self.open, self.running, self.done) = (seen.open, seen.running, seen.done);
+        self.dead = seen.dead.into_iter().collect();
+        self.retries = seen.retries.into_iter().collect();
+        self.workers.extend(seen.workers.into_iter().map(|worker| AtWork {
+            has: worker.chunk.map_or_else(
+                || "no chunk".to_owned(),
+                |chunk| format!("chunk {chunk} for {:.0} s", worker.chunk_s.unwrap_or_default()),
+            ),
+            worker: worker.worker,
+            beat_s: worker.beat_s,
+            is_fresh: worker.beat_s < FRESH.as_secs_f64(),
+        }));
+    }
+}
+
+impl From<Alive> for AtWork {
+    fn from(Alive { beat, age, .. }: Alive) -> Self {
+        Self { worker: beat.worker, has: beat.part, beat_s: age.as_secs_f64(), is_fresh: age < FRESH }
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = 100.0 * self.items_done as f64 / self.items.max(1) as f64;
+        writeln!(f, "{}: {} of {} ({share:.1} %)", self.run, self.items_done, count(self.items, "item"))?;
+        writeln!(
+            f,
+            "chunks   {} done, {} running, {} open, {} given up",
+            self.done,
+            self.running,
+            self.open,
+            self.dead.len()
+        )?;
+        let failed: usize = self.failed.values().sum();
+        writeln!(f, "texts    {} written, {} rejected; {} failed", self.written, self.rejected, count(failed, "item"))?;
+        write!(f, "pace     {:.1} items a minute", self.items_per_minute)?;
+        match self.minutes_left {
+            Some(minutes) => writeln!(f, ", about {minutes:.0} minutes left")?,
+            None => writeln!(f)?,
+        }
+        if self.usd > 0.0 {
+            writeln!(f, "cost     ${:.4} for the finished chunks", self.usd)?;
+        }
+        for (reason, times) in self.failed.iter().take(FEW) {
+            writeln!(f, "failed   {times} x {reason}")?;
+        }
+        for (chunk, reason) in self.dead.iter().take(FEW) {
+            writeln!(f, "given up chunk {chunk}: {reason}")?;
+        }
+        for (reason, times) in self.retries.iter().take(FEW) {
+            writeln!(f, "retried  {times} x {reason}")?;
+        }
+        let slowest: Vec<String> =
+            self.slowest.iter().map(|(chunk, seconds)| format!("{chunk} ({seconds:.0} s)")).collect();
+        if !slowest.is_empty() {
+            writeln!(f, "slowest  chunk {}", slowest.join(", "))?;
+        }
+        for worker in &self.workers {
+            let life = if worker.is_fresh { "" } else { ", seems gone" };
+            writeln!(
+                f,
+                "worker   {}: {}; last sign of life {:.0} s ago{life}",
+                worker.worker, worker.has, worker.beat_s
+            )?;
+        }
+        Ok(())
+    }
+}

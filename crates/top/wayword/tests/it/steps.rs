@@ -1,0 +1,232 @@
+//! `wayword export --format steps`: walks in single actions, with pictures.
+
+#![cfg(feature = "habitat")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::common::{Building, Ran};
+use serde_json::{Value, json};
+use std::{collections::BTreeMap, fs};
+use wayword_core::{Action, DVec3};
+use wayword_formats::{
+    Format,
+    trajectories::{Place, Trajectory, pictures, read},
+    vlnce_actions::{self, Acted},
+};
+use wayword_report::export::replayed;
+
+/// A run of three walks through a house with one storey, in two styles.
+fn run(building: &Building) {
+    let generate = ["generate", "--paths", "3", "--scan", "house2-1", "--metres", "4..9", "--out", "run"];
+    let ran = building.wayword(&generate);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+}
+
+fn export(building: &Building, out: &str, more: &[&str]) -> Ran {
+    let steps = ["export", "--run", "run", "--format", "steps", "--size-px", "48x48", "--out", out, "--json"];
+    building.wayword(&[&steps[..], more].concat())
+}
+
+fn trajectories(building: &Building, out: &str) -> Vec<Trajectory> {
+    read(&building.path(out).join("trajectories.jsonl")).unwrap()
+}
+
+/// Every file of a folder with its bytes, except its lock files.
+fn files(building: &Building, out: &str) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![building.path(out)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.file_name().unwrap() != "run.lock" {
+                found.insert(
+                    entry.strip_prefix(building.path(out)).unwrap().display().to_string(),
+                    fs::read(&entry).unwrap(),
+                );
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn walks_end_where_they_should_and_pictures_are_those_of_their_poses() {
+    let building = Building::new();
+    run(&building);
+    let ran = export(&building, "steps", &[]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let told = ran.json();
+    assert_eq!((&told["walks"], &told["instructions"], &told["failed"]), (&json!(3), &json!(6), &json!(0)));
+    let again = replayed(&building.path("steps"), &building.path("run"), 1).unwrap();
+    assert_eq!((again.walks, again.astray, again.others), (3, 0, 0));
+    assert!(again.farthest_off_m <= 0.5 && json!(again.pictures) == told["pictures"], "{again:?}");
+    let ends: BTreeMap<String, DVec3> = building
+        .records("run")
+        .into_iter()
+        .map(|record| (record.path.id, record.path.frames.last().unwrap().pose.position - DVec3::Z * 1.5))
+        .collect();
+    for trajectory in trajectories(&building, "steps") {
+        let last = trajectory.positions.last().unwrap();
+        assert!((*last - ends[&trajectory.id]).truncate().length() <= 0.5, "{last}");
+        let steps = trajectory.positions.windows(2).zip(&trajectory.actions);
+        for (pair, action) in steps {
+            let gone_m = (pair[1] - pair[0]).truncate().length();
+            let expected_m = if *action == Action::Forward { 0.25 } else { 0.0 };
+            assert!((gone_m - expected_m).abs() < 1e-3, "{action:?}: {gone_m}");
+        }
+        let styles: Vec<&str> = trajectory.instructions.iter().map(|told| told.style.as_str()).collect();
+        assert_eq!(styles, ["r2r", "reverie"]);
+        let parts = &trajectory.instructions[0].sub_instructions;
+        assert!(parts.len() > 1 && parts[0].steps[0] == 0);
+        assert!(parts.windows(2).all(|pair| pair[0].steps[1] == pair[1].steps[0]), "{parts:?}");
+        let shown = pictures(&building.path("steps"), &trajectory).unwrap();
+        let size = image::load_from_memory(&shown[0]).unwrap().into_rgb8().dimensions();
+        assert_eq!((shown.len(), size), (trajectory.actions.len(), (48, 48)));
+    }
+}
+
+#[test]
+fn vlnce_files_agree_with_the_steps() {
+    let building = Building::new();
+    run(&building);
+    assert_eq!(export(&building, "steps", &["--split", "val_seen"]).code, Some(0));
+    let episodes = Format::Vlnce.read(&building.path("steps/val_seen.json.gz")).unwrap();
+    let acted = vlnce_actions::read(&building.path("steps/val_seen_gt.json.gz")).unwrap();
+    let mut told = BTreeMap::new();
+    for trajectory in trajectories(&building, "steps") {
+        assert_eq!(trajectory.split, "val_seen");
+        for instruction in &trajectory.instructions {
+            told.insert(instruction.episode_id.clone(), instruction.text.clone());
+            assert_eq!(acted[&instruction.episode_id], Acted::of(&trajectory.actions, &trajectory.positions));
+        }
+    }
+    let written: BTreeMap<String, String> =
+        episodes.into_iter().map(|episode| (episode.id, episode.instructions[0].clone())).collect();
+    assert_eq!((written.len(), acted.len()), (6, 6));
+    assert_eq!(written, told);
+}
+
+#[test]
+fn an_export_that_was_stopped_goes_on_and_gives_the_same_bytes() {
+    let building = Building::new();
+    run(&building);
+    for more in [&[][..], &["--shard", "2"]] {
+        let out = if more.is_empty() { "folders" } else { "shards" };
+        assert_eq!(export(&building, out, more).code, Some(0));
+        let whole = files(&building, out);
+        // As if the program had been killed while it wrote the last line, with pictures half written.
+        let lines = fs::read_to_string(building.path(out).join("trajectories.jsonl")).unwrap();
+        let first = lines.lines().next().unwrap();
+        fs::write(building.path(out).join("trajectories.jsonl"), format!("{first}\n{}", &first[..40])).unwrap();
+        for made in ["train.json.gz", "train_gt.json.gz", "train.json.gz.provenance.jsonl"] {
+            fs::remove_file(building.path(out).join(made)).unwrap();
+        }
+        let last = trajectories_of(&lines).last().unwrap().clone();
+        if let Place::Folder(images) = &last.pictures {
+            let images = building.path(out).join(images);
+            fs::rename(&images, images.with_file_name(format!(".{}.part", last.id))).unwrap();
+        }
+        assert_eq!(export(&building, out, more).code, Some(0));
+        assert!(files(&building, out) == whole, "{out} differs");
+        let settings = export(&building, out, &[more, &["--turn-deg", "30"]].concat());
+        assert!(settings.refused().contains("other settings: turn_deg"), "{settings:?}");
+    }
+}
+
+fn trajectories_of(lines: &str) -> Vec<Trajectory> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("t.jsonl");
+    fs::write(&file, lines).unwrap();
+    read(&file).unwrap()
+}
+
+#[test]
+fn tar_shards_have_the_same_content_as_folders() {
+    let building = Building::new();
+    run(&building);
+    assert_eq!(export(&building, "folders", &[]).code, Some(0));
+    assert_eq!(export(&building, "shards", &["--shard", "2"]).code, Some(0));
+    let (apart, packed) = (trajectories(&building, "folders"), trajectories(&building, "shards"));
+    for (apart, packed) in apart.iter().zip(&packed) {
+        let all = |out: &str, trajectory| pictures(&building.path(out), trajectory).unwrap();
+        assert!(all("folders", apart) == all("shards", packed));
+        assert_eq!(apart, &Trajectory { pictures: apart.pictures.clone(), ..packed.clone() });
+    }
+    let shards: Vec<String> = files(&building, "shards").into_keys().filter(|name| name.ends_with(".tar")).collect();
+    assert_eq!(shards, ["shards/000000.tar", "shards/000001.tar"]);
+}
+
+#[test]
+fn a_walk_that_cannot_be_taken_is_an_error_of_its_own() {
+    let building = Building::new();
+    run(&building);
+    let mut lines = building.lines("run/instructions.jsonl");
+    // The second walk leads out of the house.
+    let second = lines[2]["path"]["id"].clone();
+    for line in lines.iter_mut().filter(|line| line["path"]["id"] == second) {
+        line["path"]["frames"][1]["pose"]["position"] = json!([90.0, 90.0, 1.5]);
+    }
+    let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    building.write("run/instructions.jsonl", text);
+    let ran = export(&building, "steps", &[]);
+    assert_eq!((ran.code, &ran.json()["walks"], &ran.json()["failed"]), (Some(3), &json!(2), &json!(1)));
+    let errors = building.lines("steps/errors.jsonl");
+    assert_eq!((errors.len(), &errors[0]["item"], &errors[0]["failure"]), (1, &second, &json!("broken")));
+    assert!(errors[0]["reason"].as_str().unwrap().starts_with("place 1 of the walk: "), "{errors:?}");
+}
+
+#[test]
+fn steps_refuse_flags_that_do_not_fit() {
+    let building = Building::new();
+    run(&building);
+    assert!(export(&building, "steps", &["--turn-deg", "50"]).refused().contains("a turn of 50 degrees"));
+    let flags = ["export", "--run", "run", "--format", "r2r", "--style", "r2r", "--out", "x.json", "--fov-deg", "60"];
+    assert!(building.wayword(&flags).refused().contains("the flags of steps are for --format steps"));
+    building.run_over_episodes("matterport");
+    let ran = building.wayword(&["export", "--run", "matterport", "--format", "steps", "--out", "steps"]);
+    assert!(ran.refused().contains("platform matterport has no ground on which single steps can be taken"), "{ran:?}");
+    assert!(!building.path("steps").exists());
+}
+
+#[test]
+fn houses_are_a_set_of_scenes_for_habitat_with_episodes_that_can_be_walked() {
+    let building = Building::new();
+    let ran = building.wayword(&["house", "--seed", "1", "--paths", "3", "--out", "set", "--json"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let json_of = |name: &str| serde_json::from_slice::<Value>(&fs::read(building.path(name)).unwrap()).unwrap();
+    let stage = json_of("set/house2-1/house2-1.stage_config.json");
+    for named in ["render_asset", "semantic_asset", "semantic_descriptor_filename", "nav_asset"] {
+        let file = building.path("set/house2-1").join(stage[named].as_str().unwrap());
+        assert!(file.is_file(), "{named}: {}", file.display());
+    }
+    assert_eq!(json_of("set/houses.scene_dataset_config.json")["stages"]["paths"][".json"], json!(["house2-*"]));
+    let episodes = Format::Vlnce.read(&building.path("set/episodes/train.json.gz")).unwrap();
+    let acted = vlnce_actions::read(&building.path("set/episodes/train_gt.json.gz")).unwrap();
+    assert_eq!((episodes.len(), acted.len()), (3, 3));
+    for episode in &episodes {
+        let acted = &acted[&episode.id];
+        let (first, last) = (episode.floor_positions[0], *episode.floor_positions.last().unwrap());
+        assert!((acted.locations[0] - first).truncate().length() < 0.3);
+        assert!((*acted.locations.last().unwrap() - last).truncate().length() <= 0.5);
+    }
+    let written = unzipped(&building.path("set/episodes/train.json.gz"));
+    for episode in written["episodes"].as_array().unwrap() {
+        assert!(building.path("set").join(episode["scene_id"].as_str().unwrap()).is_file());
+        assert!(episode["info"].get("scene_needs").is_none(), "{episode}");
+    }
+    let lab = fs::read_to_string(building.path("set/vln.yaml")).unwrap();
+    for told in ["# @package _global_", "/benchmark/nav/vln_r2r", "scenes_dir: .", "episodes/{split}.json.gz"] {
+        assert!(lab.contains(told), "{told}: {lab}");
+    }
+    // The houses of a run, with its instructions.
+    let again = building.wayword(&["house", "--run", "set/run", "--out", "again", "--json"]);
+    assert_eq!(again.code, Some(0), "{again:?}");
+    for same in ["episodes/train.json.gz", "episodes/train_gt.json.gz", "house2-1/house2-1.navmesh", "vln.yaml"] {
+        let bytes = |set: &str| fs::read(building.path(set).join(same)).unwrap();
+        assert!(bytes("set") == bytes("again"), "{same}");
+    }
+}
+
+fn unzipped(file: &std::path::Path) -> Value {
+    serde_json::from_reader(flate2::read::GzDecoder::new(fs::File::open(file).unwrap())).unwrap()
+}

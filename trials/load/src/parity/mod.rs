@@ -1,0 +1,185 @@
+//! Compares a detector that runs in this process with an implementation in PyTorch, on the same random weights of the true size: its
+//! numbers, its time and its memory.
+
+mod oracle;
+mod subject;
+
+use oracle::{Case, Oracle, Spent};
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+use subject::Subject;
+use wayword_core::Image;
+use wayword_run::{error::Error, output::Output};
+use wayword_testkit::resources;
+
+/// The flags of `parity`.
+#[derive(Debug, clap::Args)]
+pub(super) struct Flags {
+    /// The detector.
+    #[arg(value_enum)]
+    detector: Kind,
+    /// A folder for random checkpoints and PyTorch's numbers, up to 2 GB for each detector. Missing files are made.
+    #[arg(long)]
+    folder: PathBuf,
+    /// Compute so many pictures with each of the two, in turns, and compare the times.
+    #[arg(long, default_value_t = 0)]
+    times: usize,
+    /// Python with the packages that the scripts in `crates/models/wayword-local/fixtures` name.
+    #[arg(long, default_value = "python3")]
+    python: PathBuf,
+}
+
+/// The detectors that are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Kind {
+    GlipT,
+    GroundingDinoTiny,
+    GroundingDinoBase,
+    MmGroundingDinoTiny,
+    MmGroundingDinoBase,
+    Owlv2Base,
+}
+
+/// The largest differences between the numbers of two implementations.
+#[derive(Debug, Clone, Copy, Default)]
+struct Off {
+    logits: f32,
+    boxes_px: f32,
+}
+
+/// The differences that count as equal.
+const WANTED: Off = Off { logits: 1e-4, boxes_px: 1e-3 };
+
+/// The number of threads of each side.
+const THREADS: usize = 2;
+
+/// Width and height of the pictures of which the time is measured, pixels.
+const TIMED: (u32, u32) = (640, 480);
+
+pub(super) fn measure(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(THREADS).build_global();
+    threads.map_err(|error| Error::usage(format!("cannot use {THREADS} threads: {error}"), "try again"))?;
+    let folder = flags.folder.join(flags.detector.script().1);
+    let oracle = Oracle::made(flags.detector, &folder, &flags.python)?;
+    let mut lines = Vec::new();
+    if flags.times > 0 {
+        lines.extend(times(flags, &folder, &oracle)?);
+    }
+    lines.push("picture    phrases   logits     boxes".to_owned());
+    let mut loaded: Option<(Option<usize>, Subject)> = None;
+    for (at, case) in oracle.cases.iter().enumerate() {
+        // GLIP's pictures are shown at several sizes.
+        let subject = match loaded.take() {
+            Some((short_px, subject)) if short_px == case.short_px => subject,
+            _ => Subject::load(flags.detector, &folder, case.short_px)?,
+        };
+        let off = subject.off(case, &oracle.numbers(at))?;
+        lines.push(line(case, off));
+        loaded = Some((case.short_px, subject));
+    }
+    output.data(&(), lines.join("\n"));
+    Ok(())
+}
+
+fn line(case: &Case, off: Off) -> String {
+    let (width, height) = case.size;
+    let reached = if off.logits <= WANTED.logits && off.boxes_px <= WANTED.boxes_px { "" } else { "  not reached" };
+    let size = format!("{width}x{height}");
+    format!("{size:<10} {:>7}  {:>7.1e}  {:>7.1e} px{reached}", case.phrases.len(), off.logits, off.boxes_px)
+}
+
+/// The times of both sides, in turns.
+fn times(flags: &Flags, folder: &Path, oracle: &Oracle) -> Result<Vec<String>, Error> {
+    let subject = Subject::load(flags.detector, &flags.detector.timed(folder), Some(480))?;
+    let mut theirs = oracle.clock(&flags.python)?;
+    let (mut ours, mut other, mut many) = (Vec::new(), Vec::new(), Vec::new());
+    // The first of each warms up.
+    for round in 0..=flags.times {
+        let one = spent(&subject, round, &flags.detector.phrases(round))?;
+        let their = theirs.spent()?;
+        if flags.detector == Kind::Owlv2Base {
+            many.push(spent(&subject, round + 100, &twenty(round))?);
+        }
+        if round > 0 {
+            ours.push(one);
+            other.push(their);
+        } else {
+            many.clear();
+        }
+    }
+    let (ours, other) = (Spent::median(&ours), Spent::median(&other));
+    let mut lines = vec![
+        "side       seconds  of both threads   at most".to_owned(),
+        format!("Wayword    {ours}"),
+        format!("PyTorch    {other}"),
+        format!("ratio      {:>7.2} {:>16.2}", ours.wall_s / other.wall_s, ours.cpu_s / other.cpu_s),
+    ];
+    if !many.is_empty() {
+        let many = Spent::median(&many);
+        lines.push(format!("20 phrases {many}, {:.3} of the time of 3 phrases", many.cpu_s / ours.cpu_s));
+    }
+    Ok(lines)
+}
+
+/// The cost of one picture that is not in any cache.
+fn spent(subject: &Subject, number: usize, phrases: &[String]) -> Result<Spent, Error> {
+    let image = picture(TIMED, number as u8)?;
+    let phrases: Vec<&str> = phrases.iter().map(String::as_str).collect();
+    let (begun, before) = (Instant::now(), resources::cpu());
+    subject.find(&image, &phrases)?;
+    let (wall, busy) = (begun.elapsed(), resources::cpu().saturating_sub(before));
+    Ok(Spent { wall_s: wall.as_secs_f64(), cpu_s: busy.as_secs_f64(), peak_mib: resources::peak_mib() })
+}
+
+/// Phrases that no earlier round had.
+fn twenty(round: usize) -> Vec<String> {
+    (0..20).map(|at| format!("{} door {round}", char::from(b'a' + at))).collect()
+}
+
+/// The same formula as in the scripts that make PyTorch's numbers. `number` changes one byte.
+fn picture((width, height): (u32, u32), number: u8) -> Result<Image, Error> {
+    let byte = |at: u32| {
+        let (x, y, colour) = (at / 3 % width, at / 3 / width, at % 3);
+        ((x * x * 7 + y * 13 + colour * 50 + x * y % 31 * 5) % 256) as u8
+    };
+    let mut rgb: Vec<u8> = (0..width * height * 3).map(byte).collect();
+    if let Some(first) = rgb.first_mut() {
+        *first = first.wrapping_add(number);
+    }
+    let made = Image::new(width, height, rgb);
+    made.map_err(|error| Error::usage(error.to_string(), "take the folder away and make it again"))
+}
+
+impl Kind {
+    /// The script that makes its random checkpoint, and the model's name there.
+    fn script(self) -> (&'static str, &'static str) {
+        match self {
+            Self::GlipT => ("make_glip.py", "glip"),
+            Self::GroundingDinoTiny => ("make_dino.py", "grounding-dino-tiny"),
+            Self::GroundingDinoBase => ("make_dino.py", "grounding-dino-base"),
+            Self::MmGroundingDinoTiny => ("make_dino.py", "mm-grounding-dino-tiny"),
+            Self::MmGroundingDinoBase => ("make_dino.py", "mm-grounding-dino-base"),
+            Self::Owlv2Base => ("make_owl.py", "owl"),
+        }
+    }
+
+    /// The folder of the model that is timed. A model's processor settings contain the size of pictures.
+    fn timed(self, folder: &Path) -> PathBuf {
+        match self {
+            Self::GlipT | Self::Owlv2Base => folder.to_owned(),
+            _ => folder.join("small"),
+        }
+    }
+
+    /// Phrases of 12 tokens with those at both ends; OWLv2 keeps texts, so it gets others each time.
+    fn phrases(self, round: usize) -> Vec<String> {
+        let all = |phrases: &[&str]| phrases.iter().map(|&phrase| phrase.to_owned()).collect();
+        match self {
+            Self::GlipT => all(&["blue chair", "lamp", "sink", "a wooden door"]),
+            Self::Owlv2Base => ["red door", "sink", "stairs"].iter().map(|name| format!("{name} {round}")).collect(),
+            _ => all(&["red door", "stairs", "kitchen table", "sink"]),
+        }
+    }
+}

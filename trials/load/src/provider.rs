@@ -1,0 +1,126 @@
+//! The test kit's provider as a process of its own, so that a measurement does not count the provider's time and
+//! memory.
+
+use serde::{Deserialize, Serialize};
+use std::{
+    io::{BufRead, BufReader, Read},
+    process::{Child, Command, Stdio},
+    time::Duration,
+};
+use wayword_run::{error::Error, output::Output};
+use wayword_testkit::provider::{
+    Behaviour, Dialect, Faults, Gallery, Provider, Rate, RetryAfter,
+    scripts::{Cast, FlawedEye},
+};
+
+/// How the provider behaves.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct Flags {
+    /// Time from a request to its answer, milliseconds.
+    #[arg(long, default_value_t = 0)]
+    latency_ms: u64,
+    /// Share of requests that meet a fault from which a client can recover.
+    #[arg(long, default_value_t = 0.0)]
+    storm: f64,
+    /// Requests per second that the provider accepts; 0 for any number.
+    #[arg(long, default_value_t = 0.0)]
+    requests_per_second: f64,
+    /// Requests that it accepts at once after a pause.
+    #[arg(long, default_value_t = 10)]
+    burst: u32,
+    /// Seed of the faults.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+/// The report of a provider, one line of JSON.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Told {
+    /// Its address.
+    pub(super) base_url: String,
+    /// Requests that were let in.
+    pub(super) admitted: u64,
+    /// Requests that were answered.
+    pub(super) answered: u64,
+    /// Faults that the provider made.
+    pub(super) faults: u64,
+    /// Requests above the rate.
+    pub(super) rate_limited: u64,
+}
+
+/// Serves until standard input closes. Prints a report with its address at the beginning, and one with its counts at the end.
+pub(super) fn serve(flags: &Flags, output: &Output) -> Result<(), Error> {
+    let cast = Cast::new(FlawedEye::new(Gallery::default(), flags.seed, 0.15), flags.seed, 0.2);
+    let rate = (flags.requests_per_second > 0.0).then_some(Rate {
+        requests_per_s: flags.requests_per_second,
+        burst: flags.burst,
+        retry_after: RetryAfter::Seconds,
+    });
+    let behaviour = Behaviour {
+        latency: Duration::from_millis(flags.latency_ms),
+        faults: Faults::storm(flags.storm),
+        rate,
+        seed: flags.seed,
+        ..Behaviour::of("words", cast.clone()).and("eye", cast)
+    };
+    let provider = Provider::start(behaviour).map_err(|source| Error::Io {
+        path: "127.0.0.1".into(),
+        doing: "serve on",
+        source,
+    })?;
+    let tell = || {
+        let log = provider.log();
+        let told = Told {
+            base_url: provider.base_url(Dialect::OpenAi),
+            admitted: log.admitted,
+            answered: log.answered,
+            faults: log.faults_committed(),
+            rate_limited: log.rate_limited,
+        };
+        output.data(&told, serde_json::to_string(&told).unwrap_or_default());
+    };
+    tell();
+    let _ = std::io::stdin().read_to_end(&mut Vec::new());
+    tell();
+    Ok(())
+}
+
+/// A provider in a process of its own.
+pub(super) struct Process {
+    child: Child,
+    lines: std::io::Lines<BufReader<std::process::ChildStdout>>,
+    pub(super) base_url: String,
+}
+
+impl Process {
+    /// Starts one with these flags.
+    pub(super) fn start(flags: &[String]) -> Result<Self, Error> {
+        let failed = |source| Error::Io { path: "wayword-trials".into(), doing: "start", source };
+        let own = std::env::current_exe().map_err(failed)?;
+        let mut child = Command::new(own)
+            .arg("provider")
+            .args(flags)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .map_err(failed)?;
+        let stdout = child.stdout.take().ok_or_else(|| failed(std::io::ErrorKind::BrokenPipe.into()))?;
+        let mut process = Self { child, lines: BufReader::new(stdout).lines(), base_url: String::new() };
+        process.base_url = process.told()?.base_url;
+        Ok(process)
+    }
+
+    fn told(&mut self) -> Result<Told, Error> {
+        let line = self.lines.next().and_then(Result::ok).unwrap_or_default();
+        serde_json::from_str(&line)
+            .map_err(|error| Error::usage(format!("the provider said {line:?}: {error}"), "try again"))
+    }
+
+    /// Stops the process, and returns its last report.
+    pub(super) fn end(mut self) -> Result<Told, Error> {
+        drop(self.child.stdin.take());
+        let told = self.told();
+        let _ = self.child.wait();
+        told
+    }
+}
