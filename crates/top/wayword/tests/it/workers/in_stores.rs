@@ -42,7 +42,7 @@ fn workers_send_what_they_make_and_it_is_merged_as_one_machine_makes_it() {
     // The temporary folder of a command is removed at its end.
     let scratch = building.path("scratch");
     fs::create_dir(&scratch).unwrap();
-    let ran = common::run(building.command(&["runs", "status", &run]).env("TMPDIR", &scratch));
+    let ran = crate::common::run(building.command(&["runs", "status", &run]).env("TMPDIR", &scratch));
     assert_eq!((ran.code, fs::read_dir(&scratch).unwrap().count()), (Some(0), 0));
 }
 
@@ -133,7 +133,7 @@ fn data_is_fetched_from_a_store_once() {
         let mut args = vec!["generate", "--platform", "matterport", "--data", data, "--out", out];
         args.extend(episodes);
         let mut command = building.command(&args);
-        common::run(command.env("XDG_CACHE_HOME", &cache).env("HOME", &cache))
+        crate::common::run(command.env("XDG_CACHE_HOME", &cache).env("HOME", &cache))
     };
     let near = from("data", "near");
     assert_eq!(near.code, Some(0), "{near:?}");
